@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """Fails where a message, a help text or the comment of a public header uses a word that only this project has.
 
-  tests/docs/source_words.py [--all] [FILE...]
+  tests/docs/source_words.py [FILE...]
 
 Reads the string literals of tactus/ that are prose, and the comments of the headers that are installed, with the rules of
-words.py. Identifiers are not read. A file with findings must be in source_words_not_yet.txt, and a file of that list must have
-some: the list only shrinks. --all prints what is left and ends with status 0.
+words.py. Identifiers are not read. Without FILE it reads all files of tactus/.
 """
 import re
 import sys
@@ -13,8 +12,6 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from words import RULES, root
-
-not_yet_file = Path(__file__).with_name("source_words_not_yet.txt")
 
 # (file, word as it is found, why it may stay)
 EXCUSES = [
@@ -62,31 +59,20 @@ def findings_in(file):
 
 
 def main():
-    wanted = [Path(argument).resolve() for argument in sys.argv[1:] if argument != "--all"]
+    wanted = [Path(argument).resolve() for argument in sys.argv[1:]]
     sources = wanted or sorted(file for suffix in ("hpp", "cpp") for file in (root / "tactus").rglob(f"*.{suffix}"))
-    not_yet = set(not_yet_file.read_text().split())
-    problems, left, used = [], 0, set()
+    problems, used = [], set()
     for file in sources:
         name = str(file.relative_to(root))
-        found = []
         for number, word, use in findings_in(file):
             excuse = next((e for e in EXCUSES if e[0] == name and e[1].lower() == word.lower()), None)
             if excuse:
                 used.add(excuse)
             else:
-                found.append(f"{name}:{number}: '{word}': write {use}")
-        left += len(found)
-        if "--all" in sys.argv or wanted or name not in not_yet:
-            problems += found
-        elif not found:
-            problems.append(f"{name}: is clean: take it out of {not_yet_file.name}")
+                problems.append(f"{name}:{number}: '{word}': write {use}")
     if not wanted:
-        problems += [f"{name}: is in {not_yet_file.name}, and does not exist" for name in sorted(not_yet) if not (root / name).is_file()]
         problems += [f"{e[0]}: '{e[1]}' is excused and does not occur" for e in EXCUSES if e not in used]
-    print("\n".join(problems) or f"No private word outside of {len(not_yet)} files that are still to do.")
-    if "--all" in sys.argv:
-        print(f"{left} in all")
-        return 0
+    print("\n".join(problems) or "No private word.")
     return 1 if problems else 0
 
 

@@ -1,15 +1,12 @@
 #!/usr/bin/env python3
 """Fails where a page uses a word that only this project has, in place of the word of the field.
 
-  tests/docs/words.py [--all] [PAGE...]
+  tests/docs/words.py [PAGE...]
 
-Prose alone is read: not code spans and blocks, quotations, link targets and comments. Without PAGE it reads the pages of
-CHECKED. Every page must be in CHECKED or in NOT_YET; a page that is rewritten moves from NOT_YET to CHECKED. --all reads both
-and ends with status 0: a list of what is left.
+Prose alone is read: not code spans and blocks, quotations, link targets and comments. Without PAGE it reads all pages.
 """
 import re
 import sys
-from collections import Counter
 from pathlib import Path
 
 root = Path(__file__).resolve().parent.parent.parent
@@ -49,32 +46,6 @@ RULES = [
 ]
 # In a page for users leader and follower come first; master and slave are the papers' words.
 LEADER_FIRST = (r"\b[Mm]asters?\b|\b[Ss]laves?\b", "leader, follower", "the master moves", "a masterpiece")
-
-# Pages that are written in the words of the field. This list only grows.
-CHECKED = """
-README.md CODE_OF_CONDUCT.md docs/README.md docs/glossary.md docs/versioning.md docs/tutorial/first-hour.md
-docs/tutorial/two-arms.md docs/how-to/my-arm-buzzes.md docs/how-to/compare-methods.md docs/how-to/openarm.md
-docs/how-to/yam.md docs/how-to/gello.md docs/how-to/so101.md docs/how-to/dynamixel-servos.md
-docs/how-to/feetech-servos.md docs/how-to/inverse3.md docs/how-to/damiao-motors.md
-docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md docs/how-to/your-own-device.md docs/how-to/ros2.md
-docs/how-to/live-page.md docs/how-to/live-view.md docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md
-docs/how-to/real-time.md docs/how-to/advise.md docs/how-to/combinations.md docs/how-to/components.md
-docs/how-to/your-own-arm.md docs/how-to/python.md CONTRIBUTING.md SECURITY.md docs/theory/induced-master-motion.md docs/theory/stability.md
-docs/theory/rivals.md docs/theory/contest.md docs/theory/cancellation-models.md docs/theory/force-estimators.md
-docs/theory/hand-force.md docs/theory/frequency-responses.md docs/theory/signal-prediction.md
-docs/theory/operator-impedance.md docs/theory/sensorless-teleoperation.md docs/theory/quick-identification.md
-docs/theory/diagnosis.md docs/theory/servo-hydraulic-slave.md docs/theory/couplings.md docs/theory/four-channel.md
-docs/theory/simulation.md docs/theory/maps.md docs/theory/passivity.md docs/theory/successive-isolation.md
-docs/validation.md docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md
-docs/theory/arms.md docs/theory/arm-identification.md docs/theory/arm-methods.md
-docs/theory/arm-advice.md docs/theory/arm-vibration.md docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
-docs/architecture.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md docs/how-to/faults.md
-docs/theory/safety.md docs/reference/wire-format.md docs/how-to/site.md
-""".split()
-
-# Pages that have yet to be rewritten. This list only shrinks.
-NOT_YET = """
-""".split()
 
 # (page, word as it is found, why it may stay)
 EXCUSES = [
@@ -133,21 +104,10 @@ def pages_there():
 
 
 def main():
-    wanted = [argument for argument in sys.argv[1:] if argument != "--all"]
-    listed = set(CHECKED) | set(NOT_YET)
+    wanted = sys.argv[1:]
     problems = list(broken_rules())
-    if not wanted:
-        problems += [f"{page}: not in {Path(__file__).name}: add it to CHECKED" for page in sorted(pages_there() - listed)]
-        problems += [f"{page}: is listed in {Path(__file__).name}, and does not exist" for page in sorted(listed - pages_there())]
-        problems += [f"{page}: is in both lists of {Path(__file__).name}" for page in sorted(set(CHECKED) & set(NOT_YET))]
-    if "--all" in sys.argv:
-        for page in sorted(listed):
-            found = Counter(word.lower() for _, word, _ in findings_in(page, (root / page).read_text()))
-            if found:
-                print(f"{page}: {sum(found.values())}: " + ", ".join(f"{word} {count}" for word, count in found.most_common(12)))
-        return 0
     used = set()
-    for page in wanted or CHECKED:
+    for page in wanted or sorted(pages_there()):
         for number, word, use in findings_in(page, (root / page).read_text()):
             excuse = next((e for e in EXCUSES if e[0] == page and e[1].lower() == word.lower()), None)
             if excuse:

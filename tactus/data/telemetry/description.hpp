@@ -34,13 +34,13 @@ std::string ros_name(std::string_view name);
 /// site, frame and sign before each member.
 std::string ros2msg(const std::vector<Column>& columns);
 
-/// What the definition says in comments only, in a form for machines: name, unit, site, frame, sign and meaning of each
+/// The content of a definition's comments, in a form for machines: name, unit, site, frame, sign and meaning of each
 /// member, as metadata of a channel. The inverse, together with a definition, is `columns_of`.
 std::map<std::string, std::string> column_metadata(const std::vector<Column>& columns);
 
 /// Columns from a definition and a channel's metadata; a member that the metadata does not know keeps its own name and
-/// the unit that the name's end tells. Errors: `syntax` for a definition that holds anything but `float64`, `int64` and
-/// `bool` members, or more than 4096 of them.
+/// the unit that the name's suffix states. Errors: `syntax` for a definition that holds anything but `float64`, `int64`
+/// and `bool` members, or more than 4096 of them.
 Result<std::vector<Column>> columns_of(std::string_view definition, const std::map<std::string, std::string>& metadata);
 
 /// The same signal of a joint that turns: what is in m, m/s, N, N/m or N s/m is in rad, rad/s, N m, N m/rad or
@@ -57,7 +57,7 @@ std::string name_without_unit(const Column& column);
 struct CodeWords {
   std::int64_t first = 0;
   std::vector<std::string> words = {};
-  /// The word of a value; empty where there is none.
+  /// The word of a value; empty if the value has no word.
   [[nodiscard]] std::string_view of(double value) const;
 };
 CodeWords code_words(const Column& column);

@@ -21,8 +21,8 @@ struct Episode {
 inline constexpr const char* episodes_topic = "/episodes";
 inline constexpr const char* episode_mark = "mark";
 
-/// The topic whose column `state` tells whether the follower follows: that of the follower's site, or of the leader's
-/// where the follower runs elsewhere. Null where the log is not of sites.
+/// The topic whose column `state` shows whether the follower follows: that of the follower's site, or of the leader's
+/// if the follower runs elsewhere. Null if the log is not one of sites.
 const LogTable* site_that_follows(const LogContent& content);
 
 /// The episodes of a log, in their order. The site is `active` from the first cycle of each to the last, and

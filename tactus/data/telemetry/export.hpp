@@ -9,8 +9,8 @@
 
 namespace tactus::telemetry {
 
-/// Columns of a log for other programs. Each writes beside the file first and then takes its name, so a reader sees all
-/// or nothing. After the run only. Errors: `unwritable`, `missing` for a log without messages.
+/// Columns of a log for other programs. Each function writes a temporary file next to the target and renames it, so a
+/// reader sees all or nothing. After the run only. Errors: `unwritable`, `missing` for a log without messages.
 ///
 /// A table whose record has no `time_s` gets one, from the times of its messages, and of a log that states its start
 /// `wall_time_s`, the same in seconds of Unix time. Columns of codes (states, causes, faults) come with their words.
@@ -18,8 +18,8 @@ namespace tactus::telemetry {
 /// once: what a log of others has otherwise is changed, cut or numbered (`_2`), in the order of the log.
 
 /// The first table as text: `name [unit]` heads, numbers that read back equal. What `recording::read` reads. Of a run
-/// of several, lines that begin with `#` say before the heads which it is: in words, then `key=value` for each varied
-/// key; so does `joint=elbow` of a joint's topic. The words of codes are columns at the end (`state_text`).
+/// of several, lines that begin with `#` state before the heads which run it is: in words, then `key=value` for each
+/// varied key; for a joint's topic also `joint=elbow`. The words of codes are columns at the end (`state_text`).
 Check export_csv(const LogContent& content, const std::filesystem::path& file);
 
 /// MATLAB file of version 5: a struct for each topic with a column vector for each signal, named with its unit, and a

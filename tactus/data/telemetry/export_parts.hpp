@@ -20,7 +20,7 @@ namespace tactus::telemetry {
 /// names that are alike then, the second ends in `_2`, the third in `_3`.
 class Identifiers {
  public:
-  /// `stem` stands before a name that does not begin with a letter.
+  /// `stem` is put in front of a name that does not begin with a letter.
   explicit Identifiers(std::string stem, std::initializer_list<std::string_view> reserved = {});
   std::string unique(std::string_view name);
 
@@ -47,7 +47,8 @@ struct ExportColumns {
 /// Codes in words: `0 configure, 1 align`.
 std::string text_of(const CodeWords& codes);
 
-/// What a channel states beside its columns (`joint`, `elbow`), its keys as identifiers and its texts one line each.
+/// What a channel states in addition to its columns (`joint`, `elbow`), its keys as identifiers and its texts one line
+/// each.
 std::vector<std::pair<std::string, std::string>> about_channel(const LogTable& table);
 
 /// A time of a log in seconds of Unix time, to 0.3 us.
@@ -56,7 +57,7 @@ double wall_seconds(std::uint64_t start_unix_ns, std::uint64_t time_ns);
 /// What the tables of a log are called, in their order.
 std::vector<std::string> names_of(const std::vector<LogTable>& tables);
 
-/// What the log says about the run that it comes from and when it started, its keys as identifiers; empty where it says
+/// What the log states about the run that wrote it and when it started, its keys as identifiers; empty if it states
 /// nothing.
 std::map<std::string, std::string> about(const LogSummary& summary);
 
@@ -66,7 +67,7 @@ struct Condition {
   std::vector<std::pair<std::string, std::string>> set;  ///< each varied key and its value
 };
 
-/// The condition of the run that a topic belongs to (`/run_1/teleoperator` to `run_1`); none where the log tells none.
+/// The condition of the run that a topic belongs to (`/run_1/teleoperator` to `run_1`); empty if the log states none.
 std::optional<Condition> condition_of(const LogSummary& summary, std::string_view topic);
 
 /// The error for a log that has nothing to export.

@@ -43,9 +43,9 @@ struct LogSummary {
 };
 
 /// Reads an MCAP file from front to back, the messages of every complete chunk in the order in which they were written,
-/// those of a file that was cut at any byte included. No index is needed or believed.
+/// those of a file that was cut at any byte included. No index is needed or used.
 ///
-/// Memory and time are bounded whatever the file says: a record beyond 64 MiB, before or after decompression, is
+/// Memory and time are bounded whatever the file declares: a record beyond 64 MiB, before or after decompression, is
 /// skipped as damaged, and so is what a file declares beyond 16 MiB. Compression: zstd, lz4, none. `visit` may end the
 /// reading by returning an error.
 ///
@@ -62,9 +62,9 @@ struct LogTable {
   std::vector<std::vector<double>> values;        ///< one for each column, all of one length
   std::vector<std::uint64_t> times_ns;            ///< of the messages; from the start of a log that states it
   std::uint64_t missing = 0;                      ///< messages that the sequence numbers show to be missing
-  std::map<std::string, std::string> about = {};  ///< what the channel states beside its columns, as `joint`
+  std::map<std::string, std::string> about = {};  ///< what the channel states in addition to its columns, as `joint`
 
-  /// The values of a column; null where there is none of that name.
+  /// The values of the column of this name; null if the table does not have it.
   [[nodiscard]] const std::vector<double>* find(std::string_view name) const;
 };
 
@@ -73,7 +73,7 @@ struct LogContent {
   std::vector<LogTable> tables;                     ///< channels with at least one message
   std::optional<std::uint64_t> start_unix_ns = {};  ///< Unix time from which `times_ns` count; of virtual time none
 
-  /// Null where there is none.
+  /// The table of this topic; null if the log does not have it.
   [[nodiscard]] const LogTable* find(std::string_view topic) const;
 };
 

@@ -13,7 +13,7 @@
 
 namespace tactus::telemetry {
 
-/// The metadata that says in words what sets each run apart from the others, by the name of the run: `run_1` to
+/// The metadata that states in words how each run differs from the others, by the name of the run: `run_1` to
 /// `force gain 3`. The metadata `run_1` has the values of the varied keys.
 inline constexpr const char* run_labels = "labels";
 
@@ -26,7 +26,7 @@ struct ChannelDescription {
 };
 
 /// The metadata that states when a log started, in words and in ns of Unix time, from which the times of its messages
-/// count. A log of virtual time has none.
+/// count. A log of virtual time does not have it.
 inline constexpr const char* log_clock = "clock";
 inline constexpr const char* log_start_key = "start_unix_ns";
 
@@ -41,7 +41,7 @@ struct ChannelCount {
 /// One file of a log.
 struct LogPartSummary {
   std::filesystem::path file;
-  std::uint64_t first_time_ns = 0;  ///< of its messages, as the file has it; both 0 where there is none
+  std::uint64_t first_time_ns = 0;  ///< of its messages, as the file has it; both 0 without messages
   std::uint64_t last_time_ns = 0;
   std::vector<std::uint64_t> messages;  ///< by channel, acknowledged
 };
@@ -50,7 +50,7 @@ struct LogPartSummary {
 ///
 /// Messages gather in a chunk. A full one is compressed (zstd), gets its CRC-32 and goes to the system in one write;
 /// then its messages are **acknowledged** and the end of the process no longer touches them. Schemas, channels and
-/// metadata stand before the first chunk, so every complete chunk can be read without the end of the file. `close` adds
+/// metadata are before the first chunk, so every complete chunk can be read without the end of the file. `close` adds
 /// the indexes, statistics and the footer.
 ///
 /// Where a write fails (a full disk), the file is cut back to its last complete record, the messages of the chunk are
@@ -114,7 +114,7 @@ class LogWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Writes `metadata.yaml` beside a closed log, so that a ROS 2 bag tool takes the folder (rosbag2 format 5).
+/// Writes `metadata.yaml` next to a closed log, so that a ROS 2 bag tool takes the folder (rosbag2 format 5).
 Check write_bag_metadata(const std::filesystem::path& log, const LogWriter& writer);
 
 }  // namespace tactus::telemetry

@@ -19,7 +19,7 @@
 
 namespace tactus::telemetry {
 
-/// What a log says about its own gaps, on the topic `/tactus/gaps`: written whenever one of the counts has grown.
+/// What a log reports about its own gaps, on the topic `/tactus/gaps`: written whenever one of the counts has grown.
 struct Gap {
   std::int64_t channel = 0;  ///< in the order in which the channels were added
   std::int64_t dropped = 0;
@@ -42,11 +42,11 @@ class Stream {
   virtual ~Stream() = default;
   /// Moves what is waiting into the log. Writer thread only.
   virtual void drain(LogWriter& log) = 0;
-  /// Records that were lost on the way to the log. Any thread.
+  /// Records that were lost before they reached the log. Any thread.
   [[nodiscard]] virtual std::uint64_t dropped() const noexcept = 0;
 };
 
-/// One channel as the servo thread sees it: one copy of each record, for a log and for whoever else looks on. By
+/// One channel as the servo thread sees it: one copy of each record, for the log and all other observers. By
 /// default it holds 0.8 s at 5 kHz.
 template <Recordable Record, std::size_t Capacity = 4096>
 class RecordStream {
@@ -66,7 +66,7 @@ class RecordStream {
   [[nodiscard]] const std::vector<Column>& columns() const noexcept { return columns_; }
   [[nodiscard]] const std::map<std::string, std::string>& about() const noexcept { return about_; }
 
-  /// One thread only. Real-time safe: wait-free, no allocation, no system call, whoever looks on or does not.
+  /// One thread only. Real-time safe: wait-free, no allocation, no system call, with observers and without.
   void push(std::uint64_t time_ns, const Record& record) noexcept { entries_->push({time_ns, next_++, record}); }
   /// Sees what is pushed from now on. Who falls behind by more than the capacity loses the oldest, and counts it.
   [[nodiscard]] Reader watch() const { return Reader(entries_); }
@@ -102,7 +102,7 @@ class LoggedStream final : public Stream {
   std::atomic<std::uint64_t> dropped_{0};
 };
 
-/// Records at full rate beside a servo thread: streams on one side, a thread of its own that writes the log on the
+/// Records at full rate while a servo thread runs: streams on one side, a thread of its own that writes the log on the
 /// other.
 ///
 /// Order of use: `create`, `add` for each channel, `start`, pushes, `stop`. What goes wrong on the disk reaches the
@@ -141,7 +141,7 @@ class Recorder {
   /// A chunk is written at least every `flush_every_s`, so a killed process loses no more than that.
   void start(Seconds flush_every = Seconds{0.1});
   /// Ends the thread, writes what is waiting, closes the file. Errors: `unwritable` where anything was lost on the
-  /// disk, `failed` where memory ran out on the way.
+  /// disk, `failed` if memory ran out meanwhile.
   Check stop();
 
   /// For each channel in the order of adding, what was overwritten before it was written down. Any thread.

@@ -34,7 +34,7 @@ class WideLog {
   [[nodiscard]] bool states_units() const { return states_units_; }
   /// Heads of the columns.
   [[nodiscard]] std::vector<std::string> heads() const;
-  /// A column of numbers of an episode, at this rate in Hz; empty where there is none of this head.
+  /// A column of numbers of an episode, at this rate in Hz; empty if no column has this head.
   [[nodiscard]] std::vector<double> column(const std::string& head, const Episode& episode, double rate_Hz) const;
   /// Rows of an episode at this rate, in Hz.
   [[nodiscard]] static std::size_t rows(const Episode& episode, double rate_Hz);

@@ -11,7 +11,7 @@
 /// The arms of a teleoperator from their URDFs and an experiment's file. Nothing here is real-time safe.
 namespace tactus::urdf {
 
-/// What a URDF says, and the file that errors name.
+/// The text of a URDF, and the file that errors name.
 struct UrdfText {
   std::string text;
   std::filesystem::path file;
@@ -21,11 +21,12 @@ using Urdfs = std::function<Result<UrdfText>(const std::string& name)>;
 /// Files, from `folder` on. Errors: those of `text_of`.
 Urdfs urdfs_below(const std::filesystem::path& folder);
 
-/// Reads the URDF and adds what it does not say. Errors: `missing` without a URDF; those of its text and of `parse`.
+/// Reads the URDF and adds what a URDF does not contain, from `params`. Errors: `missing` without a URDF; those of its
+/// text and of `parse`.
 Result<station::DescribedArm> describe_arm(const station::ArmParams& params, const Urdfs& urdfs);
 
-/// Both arms, checked. What the sites believe to carry and to resist the arms is exact. Errors: those of `describe_arm`
-/// and of `arm::Chain::make`; `inconsistent` where something is said of a follower that has no URDF of its own, and for
+/// Both arms, checked. The models of gravity and friction that the sites use are exact. Errors: those of `describe_arm`
+/// and of `arm::Chain::make`; `inconsistent` where keys describe a follower that has no URDF of its own, and for
 /// a method that couples joints where a handle leads the tool; of arms that are led joint by joint, for different
 /// numbers of joints and for another start of the follower; of one that leads the tool, for a follower without a URDF
 /// and for a leader that is no handle.

@@ -16,7 +16,7 @@ namespace tactus::arm_identification {
 struct ArmContactTorque {
   std::string joint = {};
   double mean_N_m = 0.0;
-  double within_N_m = 0.0;  ///< what the model leaves, and of a joint that stands still what its friction may hide
+  double within_N_m = 0.0;  ///< what the model leaves, and at a joint at rest what its friction may hide
 };
 
 /// A span of time in which something touched the arm.
@@ -54,8 +54,8 @@ struct ExternalTorque {
 /// passes half of the height that it has alongside, since the filter spreads an edge evenly. Contacts closer than a
 /// period are one.
 ///
-/// The threshold is the model's, `contact_threshold_N_m`, and of a joint that stands still (slower than
-/// `slowest_rad_per_s` for a period before and after) that and its dry friction: at rest friction holds any torque up
+/// The threshold is the model's, `contact_threshold_N_m`, and of a joint at rest (slower than
+/// `slowest_rad_per_s` for a period before and after) that plus its dry friction: at rest friction holds any torque up
 /// to this, in either direction, and no motor shows it. So no arm needs to move, and one that holds still by its
 /// friction is not taken for touched.
 ///

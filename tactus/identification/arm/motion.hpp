@@ -14,8 +14,8 @@ namespace tactus::arm_identification {
 /// Below this frequency arms move and their motors push; what is above is noise and the links' own ringing.
 inline constexpr double default_arm_cutoff_Hz = 10.0;
 
-/// A joint whose speed, as its root mean square, is below this tells nothing about its inertia and its friction
-/// [rad/s].
+/// A joint whose speed, as its root mean square, is below this contains no information about its inertia and
+/// friction [rad/s].
 inline constexpr double slowest_rad_per_s = 0.01;
 
 /// A recording must last so long, in seconds, for motion below the cutoff.
@@ -25,10 +25,10 @@ constexpr double shortest_motion_s(double cutoff_Hz) { return 10.0 / cutoff_Hz; 
 enum class JointsThatMove { all, any };
 
 /// How an arm moved in a recording, thinned out to rows: everything through the same zero-phase low-passes, so that
-/// what a law says of the motion and what was measured of the efforts can be compared.
+/// efforts that a law computes from the motion and efforts that were measured can be compared.
 ///
 /// Positions, velocities, accelerations and efforts first pass a fast filter, at four times the cutoff. Laws of the
-/// motion are evaluated on those, and what they say is low-passed as the efforts are (parallel filtering): a law of
+/// motion are evaluated on those, and their results are low-passed as the efforts are (parallel filtering): a law of
 /// low-passed motion is not the low-passed law, for gravity, Coriolis torque and friction are not linear. Velocity and
 /// acceleration are slopes of the positions; of the measured velocity where that has less than half of the noise of the
 /// positions' slope, as on servos with coarse encoders. As far as the filter has to guess, 1/cutoff at either end,
@@ -40,7 +40,7 @@ class ArmMotion {
   ///
   /// Errors: those of the filter; `inconsistent` for a recording shorter than ten periods of the cutoff, for a joint
   /// that hardly moves where all must, and for a velocity of a joint that moves that is not the slope of its position,
-  /// saying which it fits. `joints` names joints in errors. Not real-time safe.
+  /// stating which joint it fits. `joints` names joints in errors. Not real-time safe.
   static Result<ArmMotion> make(const ArmRecording& recording, double cutoff_Hz, double rows_per_s,
                                 const std::vector<std::string>& joints, JointsThatMove moving = JointsThatMove::all);
 

@@ -198,7 +198,7 @@ Result<std::optional<RigChannels>> read_rig_channels(const SignalRoles& roles) {
       return refuse_rig(ErrorCode::inconsistent, roles,
                         "topic " + table->topic +
                             " lacks records that came faster than they were written: record it "
-                            "anew on a machine that does nothing else");
+                            "again on a machine that does nothing else");
     }
     RigChannel channel{.role = role, .name = table->topic.substr(1) + "." + found.name, .unit = found.unit};
     for (std::size_t row = from; row < to; ++row) {

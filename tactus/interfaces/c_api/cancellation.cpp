@@ -23,7 +23,7 @@ struct CancellationFile {
     static constexpr auto fields() {
       return List{field("model", &Control::model, "The controller's model of master and hand."),
                   field("cancellation_model", &Control::cancellation_model,
-                        "How much of master and hand the model of cancellation tells apart."),
+                        "How much detail of master and hand the model of cancellation has."),
                   field("cancellation_step", &Control::cancellation_step, "How the model of cancellation is advanced."),
                   field("cancellation_friction", &Control::cancellation_friction,
                         "On which velocity the Coulomb friction of the sixth-order model acts.")};
@@ -177,7 +177,7 @@ tactus_status tactus_cancellation_copy(tactus_cancellation cancellation, tactus_
     *copy = 0;
     const auto* const found = cancellations().find(cancellation);
     if (found == nullptr)
-      return leave_text("the cancellation was released, or is none: make one", TACTUS_BAD_HANDLE, error);
+      return leave_text("the cancellation was released, or never was one: make one", TACTUS_BAD_HANDLE, error);
     return hand_out(*found, copy, error);
   });
 }

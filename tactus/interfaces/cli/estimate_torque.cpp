@@ -102,10 +102,11 @@ report::Table contacts_table(const ExternalTorque& found) {
 
 /// How often nothing is taken for a contact, and what was left out.
 std::string rate_text(const ArmModel& model, const ExternalTorque& found) {
-  std::string text = "If what the model leaves is Gaussian noise, less than " +
-                     report::number(arm_identification::false_contacts_per_hour(model), 2) +
-                     " contacts an hour are false. A joint that stands still may hide its dry friction, by which its "
-                     "threshold is raised.";
+  std::string text =
+      "If what the model leaves is Gaussian noise, less than " +
+      report::number(arm_identification::false_contacts_per_hour(model), 2) +
+      " contacts an hour are false. Dry friction may hide the torque on a joint at rest, so the threshold "
+      "of such a joint is higher by its dry friction.";
   if (found.stretches.size() > 1) {
     text += " The arm followed in " + std::to_string(found.stretches.size()) + " stretches, one after the other.";
   }

@@ -14,8 +14,8 @@ namespace tactus::cli {
 /// What runs while signals are waited for.
 enum class Interrupted {
   job,  ///< it has no operator: SIGUSR1 ends it too, and Ctrl-Z stops it as any program
-  site  ///< SIGUSR1 is the operator's, see `OperatorInput`; Ctrl-Z (SIGTSTP) ends it, for what is driven must not stand
-        ///< still
+  site  ///< SIGUSR1 is the operator's, see `OperatorInput`; Ctrl-Z (SIGTSTP) ends it, because a stopped program
+        ///< does not control its devices
 };
 
 /// While it lives, no signal that can be caught ends the program. The first one requests the end of what runs: SIGINT

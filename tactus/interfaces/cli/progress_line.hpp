@@ -6,8 +6,8 @@
 
 namespace tactus::cli {
 
-/// One line on standard error that says how far a long job is and how long it will still take. Shows nothing where
-/// standard error is not a terminal, and removes itself when it goes.
+/// One line on standard error that shows how far a long job is and how long it will still take. Shows nothing if
+/// standard error is not a terminal. The destructor removes the line.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string_view title);

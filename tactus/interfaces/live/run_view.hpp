@@ -13,11 +13,11 @@
 
 namespace tactus::live {
 
-/// What a run at the real clock does, for who looks on: every record of its streams, under the topics of its log. A
-/// viewer changes nothing and commands nothing; what is tried is refused with a word.
+/// What a run at the real clock does, for observers: every record of its streams, under the topics of its log. A
+/// viewer changes nothing and commands nothing; each attempt is refused with a message.
 class RunView final : public Application {
  public:
-  /// `about` is what a viewer is told before all else.
+  /// `about` is what a viewer receives first.
   explicit RunView(std::map<std::string, std::string> about) : about_(std::move(about)) {}
 
   /// Shows what goes into the stream from now on. Before a server starts.
@@ -48,7 +48,7 @@ class RunView final : public Application {
     Source(const Source&) = delete;
     Source& operator=(const Source&) = delete;
     virtual ~Source() = default;
-    /// The next record; without its bytes where they are not wanted. False where there is none.
+    /// The next record; without its bytes if they are not wanted. False if no record is waiting.
     virtual bool next(bool wanted, std::uint64_t& time_ns, std::string& bytes) = 0;
     [[nodiscard]] virtual std::uint64_t lost() const noexcept = 0;
   };

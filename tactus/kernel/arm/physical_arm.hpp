@@ -3,14 +3,14 @@
 #include <tactus/kernel/arm/chain.hpp>
 #include <tactus/kernel/core/joints.hpp>
 
-/// An arm with its motors and drives, as the world has it: what a plant simulates, and what the sites of an arm are
-/// told.
+/// An arm with its motors and drives, as it really is: what a plant simulates, and the parameters that the sites of an
+/// arm receive.
 namespace tactus::arm {
 
 /// A motor with its drive, and what lies between it and the joint.
 struct MotorParams {
   double torque_limit_N_m = 1e9;
-  /// Steps in which the drive tells position, velocity and torque; 0 tells them exactly.
+  /// Steps in which the drive reports position, velocity and torque; 0: it reports them exactly.
   double position_step_rad = 0.0;
   double velocity_step_rad_per_s = 0.0;
   double torque_step_N_m = 0.0;
@@ -32,7 +32,7 @@ struct PhysicalArm {
   Chain::Params chain;
   Joints<MotorParams> motors;
   Vector3 tool_m = Vector3::Zero();  ///< on the last link
-  /// A mass at the tool that carries itself, as that of a hand: it has inertia and no weight.
+  /// A mass at the tool, such as that of a hand, which has inertia and no weight.
   double carried_kg = 0.0;
   double step_s = 1e-4;  ///< of a plant that simulates it
 };

@@ -38,8 +38,8 @@ struct Error {
 /// `place: parameter: message`, leaving out what is empty.
 std::string describe(const Error& error);
 
-/// What to do about it: what follows the first colon and blank of the message, as every message is written; empty where
-/// there is none. Good as long as `error`.
+/// The remedy: the part of the message after the first colon and blank, as every message is written; empty for a
+/// message without that. Valid as long as `error`.
 std::string_view remedy(const Error& error);
 
 /// The same error, its parameter path put under `prefix` (`friction` under `slave` becomes `slave.friction`).

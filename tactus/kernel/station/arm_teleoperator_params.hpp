@@ -14,7 +14,7 @@
 /// `[servo]` and `[rig]` of an experiment's file.
 namespace tactus::station {
 
-/// A joint and its drive: what its URDF does not say, and where it begins.
+/// A joint and its drive: what its URDF does not contain, and where the joint starts.
 struct ArmJoint {
   double start_rad = 0.0;
   double armature_kg_m2 = 0.0;
@@ -84,7 +84,7 @@ struct ArmPairParams : ArmParams {
                              "The follower, if it differs from the leader: then all of it is described here. "
                              "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
                              "commands joint i of the follower, angle for angle, unless control.follower.coupling "
-                             "says tool.")});
+                             "is tool.")});
   }
 };
 
@@ -116,7 +116,7 @@ struct ProbeTorque {
   }
 };
 
-/// A gripper, or any joint beside an arm: both drives pull it to where the other side's is.
+/// A gripper, or any other joint that the arm does not have: each drive pulls its own to the position of the other's.
 struct GripperParams : arm_control::DriveGains {
   double leader_share = 0.0;
   static constexpr auto fields() {
@@ -147,7 +147,8 @@ struct ArmSupportParams {
   }
 };
 
-/// What stands between the sites and the motors of a rig, and in `tactus faults`. Taps in virtual time have none of it.
+/// Gates and supervision between the sites and the motors of a rig, and in `tactus faults`. Taps in virtual time run
+/// without them.
 struct ArmRigParams {
   control::SafetyGate::Params leader_gate;
   control::SafetyGate::Params follower_gate;

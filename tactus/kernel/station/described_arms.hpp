@@ -12,7 +12,7 @@ namespace tactus::station {
 /// An arm as its URDF and an experiment's file describe it, and where its joints begin.
 struct DescribedArm {
   std::string urdf;                 ///< its name in the file
-  std::string urdf_text;            ///< what that says
+  std::string urdf_text;            ///< the text of that file
   std::vector<std::string> joints;  ///< their names, from the base on
   arm::PhysicalArm arm;
   arm::JointVector start;

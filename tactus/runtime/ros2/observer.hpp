@@ -17,7 +17,7 @@ namespace tactus::ros2 {
 
 /// What ROS 2 nodes see of a tick. The motor is commanded the opposite of the displayed force.
 Snapshot snapshot_of(const station::TeleoperatorRecord& record, std::int64_t stamp_ns, OperatingState state);
-/// Of a site; what the other one does is left at 0. A slave's command is what it was told last.
+/// Of one site; the values of the other are 0. A slave's command is the one that it received last.
 Snapshot snapshot_of(const runtime::SiteLogRecord& record, control::SiteRole role, std::int64_t stamp_ns);
 /// Of both sites on one computer, from their records of one tick.
 Snapshot snapshot_of(const runtime::SiteLogRecord& master, const runtime::SiteLogRecord& slave, std::int64_t stamp_ns);
@@ -25,8 +25,8 @@ Snapshot snapshot_of(const runtime::SiteLogRecord& master, const runtime::SiteLo
 /// What must be added to a time of CLOCK_MONOTONIC for the time of day, in ns. Not real-time safe.
 std::int64_t to_time_of_day_ns();
 
-/// Tells ROS 2 nodes what a run at the real clock does, and takes nothing from them. It reads record streams on a
-/// thread of its own, every millisecond, so the servo thread knows nothing of it.
+/// Publishes to ROS 2 what a run at the real clock does, and subscribes to nothing. It reads record streams on a
+/// thread of its own, every millisecond, so it does not delay the servo thread.
 class Observer {
  public:
   /// Opens everything for the devices and the namespace of `params`; requests are not taken. Errors: those of
@@ -36,19 +36,19 @@ class Observer {
   Observer& operator=(const Observer&) = delete;
   ~Observer();  ///< finishes
 
-  /// Tells what goes into the streams from now on. Before `start`.
+  /// Publishes what goes into these streams from now on. Before `start`.
   void watch(const runtime::RealTimeStreams& streams);
   void watch(const runtime::SiteStreams& streams);
   void watch(const runtime::JointStreams& streams);
 
   /// Starts the thread. Errors: `failed` where the system gives none.
   Check start();
-  /// Tells what is waiting, says that the robot is disabled, and leaves. `dropped` counts records that were overwritten
-  /// before they were read as well.
+  /// Publishes what is waiting, then that the robot is disabled, and leaves. `dropped` counts records that were
+  /// overwritten before they were read as well.
   Bridge::Counts finish();
 
  private:
-  /// Reads one record, or nothing; what was lost on the way is written to `lost`.
+  /// Reads one record, or nothing; the number of lost records is written to `lost`.
   using Source = std::function<bool(Bridge& bridge, std::uint64_t& lost)>;
 
   explicit Observer(Bridge bridge) : bridge_(std::move(bridge)) {}

@@ -38,8 +38,8 @@ class JointStreams {
   void push(const station::Tick& tick, const control::SiteRequests& pressed,
             const station::JointLocalTeleoperator& sites, const station::JointLocalTeleoperator::Output& done) noexcept;
 
-  /// The same of sites without supervision; `master_heard` is what the master was told. With nothing held back on the
-  /// way, so that the slave heard what the master tells.
+  /// The same of sites without supervision; `master_heard` is what the master received. The channel has no
+  /// delay, so the slave receives what the master sends.
   void push(const station::Tick& tick, const station::JointBarePair& sites, const station::JointBarePair::Output& done,
             const Joints<control::Message>& master_heard) noexcept;
 

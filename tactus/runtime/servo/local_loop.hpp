@@ -16,11 +16,11 @@ class LocalLoop {
  public:
   struct Settings {
     double duration_s = 0.0;   ///< 0 for no end
-    bool arm_at_once = false;  ///< without waiting for a person to do it
+    bool arm_at_once = false;  ///< without waiting for the operator to do it
   };
 
-  /// `exchange` must outlive the loop. A device that is not simulated stands behind a guard, and needs limits that
-  /// somebody chose. Errors: what is wrong with the parameters or the devices.
+  /// `exchange` must outlive the loop. A device that is not simulated is behind a device guard, and its limits
+  /// must be set. Errors: what is wrong with the parameters or the devices.
   static Result<LocalLoop> make(const station::TeleoperatorParams& params, const Settings& settings,
                                 SiteExchange& exchange, SiteDevice master, SiteDevice slave);
 

@@ -25,14 +25,14 @@ struct ReplayDifference {
 
 struct Replay {
   std::string of;          ///< what was stepped: `2 taps`, `the master`, `both sites`
-  std::int64_t taps = 0;   ///< 0 where a person armed the sites
+  std::int64_t taps = 0;   ///< 0 where an operator armed the sites
   std::int64_t ticks = 0;  ///< steps that were compared, the one that differs included
   std::optional<ReplayDifference> difference;
   std::string version;  ///< of the program that wrote the log; another build may round otherwise
 };
 
-/// Steps the sites of a run at the real clock once more on what its log says that they read and were asked, and on what
-/// came over the link, and compares all that they give bit for bit. The first difference ends it. Of a log that was
+/// Steps the sites of a run at the real clock again on the logged readings and requests, and on the packets that came
+/// over the link, and compares all their outputs bit for bit. The first difference ends it. Of a log that was
 /// cut, as by a program that was killed, what all its topics have is replayed. Call it with denormals flushed, as the
 /// sites ran (`FlushedDenormals`). `real_time::replay` does all this for logs of experiments, whose configuration it
 /// reads.

@@ -16,7 +16,7 @@
 /// What all replays share: rows of a log as records, and what is compared with them.
 namespace tactus::runtime {
 
-/// Reads what the log says.
+/// Reads the content of the log.
 template <class Reading>
 class RecordedDeviceOf final : public station::DeviceOf<Reading> {
  public:
@@ -75,7 +75,7 @@ Check check_table(const telemetry::LogTable& table) {
   return std::nullopt;
 }
 
-/// A row of a checked table. A whole number beyond 2^53 is rounded, wherever it stands.
+/// A row of a checked table. A whole number beyond 2^53 is rounded, in any column.
 template <Recordable Record>
 Record row_of(const telemetry::LogTable& table, std::size_t row) {
   Record record;
@@ -114,7 +114,7 @@ std::optional<ReplayDifference> compare(const telemetry::LogTable& table, std::i
   return found;
 }
 
-/// Where there is none, null.
+/// The table of this topic; null if the log does not have it.
 inline const telemetry::LogTable* find_table(const telemetry::LogContent& content, const std::string& topic) {
   for (const telemetry::LogTable& table : content.tables) {
     if (table.topic == topic) return &table;
@@ -122,7 +122,7 @@ inline const telemetry::LogTable* find_table(const telemetry::LogContent& conten
   return nullptr;
 }
 
-/// A value of what the log says about itself; empty where it does not.
+/// A value of the log's metadata; empty if it is not there.
 std::string about(const telemetry::LogContent& content, const std::string& name, const std::string& key);
 
 }  // namespace tactus::runtime

@@ -44,7 +44,7 @@ auto row_of_step(const station::Tick& tick, const control::SiteRequests& pressed
     return recorded(tick, pressed, site, done);
   }
 }
-/// ... and of one without, which heard this.
+/// ... and of one without, which received this.
 template <class Site>
 JointsRow row_of_step(const station::Tick& tick, const Site& site, const station::Step<Site>& done,
                       const Joints<control::Message>& heard) {
@@ -67,10 +67,10 @@ std::vector<std::string> names_of_joints(const telemetry::LogContent& content);
 /// Which site the log is of, where it is of one that was alone.
 std::optional<control::SiteRole> only_site(const telemetry::LogContent& content);
 
-/// What that site has in common with the other. Errors: `missing` where the log does not say it.
+/// What that site has in common with the other. Errors: `missing` if the log does not state it.
 Result<control::Agreement> agreement_in(const telemetry::LogContent& content);
 
-/// The limits of a site's device, as the log says them. Errors: `missing` where it does not, of several joints.
+/// The limits of a site's device, as the log states them. Errors: `missing` if it does not, for several joints.
 Result<station::DeviceLimits> limits_of(const telemetry::LogContent& content, control::SiteRole role,
                                         const station::DeviceLimits& like);
 Result<Joints<station::DeviceLimits>> limits_of(const telemetry::LogContent& content, control::SiteRole role,
@@ -82,7 +82,7 @@ class SiteTables {
  public:
   using Shared = std::conditional_t<has_joints<Reading>, SiteTickRecord, SiteLogRecord>;
 
-  /// Those that begin with `place`; `joints` as `joints_in` says. Errors: those of `check_table`.
+  /// Those that begin with `place`; `joints` as `joints_in` returns it. Errors: those of `check_table`.
   static Result<SiteTables> find(const telemetry::LogContent& content, const std::string& place, std::size_t joints) {
     SiteTables found;
     const auto add = [&]<class Record>(const std::string& topic, const Record&) -> Check {
@@ -143,8 +143,8 @@ class SiteTables {
   std::vector<std::string> names_;
 };
 
-/// The way of a site that was alone: the packets of its log, tick by tick. One that never heard the other has no topic
-/// of them.
+/// The link of a site that ran alone: the packets of its log, tick by tick. The log of a site that never received one
+/// has no topic for them.
 template <class Reading>
 class RecordedPackets {
   using Payload = Each<Reading, control::Message>;
@@ -216,7 +216,7 @@ void feed(RecordedDeviceOf<Reading>& device, const SiteRow<Reading>& row) {
 }
 
 /// Steps sites once more, row by row, and compares. `step(tap, tick, logged)` gives the rows that they leave now; of
-/// several taps, each of which begins at tick 0, it makes them anew there.
+/// several taps, each of which begins at tick 0, it makes new sites there.
 template <class Reading, std::size_t N, class Step>
 Check replay_rows(const std::array<SiteTables<Reading>, N>& sites, bool whole, bool taps, Replay& replay, Step&& step) {
   std::vector<const telemetry::LogTable*> tables;

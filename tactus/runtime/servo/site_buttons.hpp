@@ -9,11 +9,11 @@
 
 namespace tactus::runtime {
 
-/// What a person may type at a running site.
+/// What the operator may type at a running site.
 enum class SiteWord {
-  arm,       ///< arms both sites and takes the dead-man switch in hand; an empty line says the same
+  arm,       ///< arms both sites and takes the dead-man switch in hand; an empty line does the same
   press,     ///< takes the dead-man switch in hand again
-  release,   ///< lets go of it
+  release,   ///< releases it
   clutch,    ///< from now on the hand moves and the slave does not
   unclutch,  ///< from now on the slave follows again
   stop,      ///< emergency stop of this site: no force, until `clear`
@@ -55,22 +55,22 @@ constexpr std::optional<EpisodeMark> mark_of(SiteWord word) noexcept {
 /// asked at the master. Errors: `syntax`, naming the words that there are.
 Result<SiteWord> parse_site_word(std::string_view line, control::SiteRole role);
 
-/// The hands of a simulated person on the buttons of a site: turns words into what is pressed, tick by tick. A site
+/// The hands of a simulated operator on the buttons of a site: turns words into what is pressed, tick by tick. A site
 /// aligns by itself at the second tick. The dead-man switch is taken as pressed while the site is armed or active,
-/// until the word `release`; after each arming it is pressed anew. Real-time safe.
+/// until the word `release`; after each arming it is pressed again. Real-time safe.
 class SiteButtons {
  public:
-  /// Whether a word can be taken: a button that was pushed is let go for a tick first.
+  /// Whether a word can be taken: a button that was pushed is released for a tick first.
   [[nodiscard]] bool ready() const noexcept { return !pushed_; }
   /// For the next `step`. A word that marks an episode presses nothing.
   void take(SiteWord word) noexcept;
-  /// Nobody is there any more: the dead-man switch stays let go, whatever is taken.
+  /// Nobody is there any more: the dead-man switch stays released, whatever is taken.
   void lose_person() noexcept { lost_ = true; }
   /// What is pressed at this tick; `state` is that after the tick before.
   control::SiteRequests step(control::SiteState state) noexcept;
 
  private:
-  control::SiteRequests next_{.dead_man = true};  ///< its dead-man switch: whether the person means to press it
+  control::SiteRequests next_{.dead_man = true};  ///< its dead-man switch: whether the operator means to press it
   bool begun_ = false;
   bool aligned_ = false;
   bool pushed_ = false;

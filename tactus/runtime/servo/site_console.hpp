@@ -8,14 +8,15 @@
 
 namespace tactus::runtime {
 
-/// What is asked of sites that run, tick by tick: what the person presses, when they shall end, when a second is over.
+/// Requests to running sites, tick by tick: what the operator presses, when they shall end, when a second is over.
 /// A value; real-time safe.
 class SiteConsole {
  public:
   struct Settings {
-    double duration_s = 0.0;              ///< 0 for no end
-    bool arm_at_once = false;             ///< once the other site was heard for `listen_before_arming_s`
-    double listen_before_arming_s = 0.0;  ///< the slave follows a number that rises, so it must have heard one before
+    double duration_s = 0.0;   ///< 0 for no end
+    bool arm_at_once = false;  ///< once the other site was received for `listen_before_arming_s`
+    double listen_before_arming_s =
+        0.0;  ///< the slave follows a number that rises, so it must have received one before
     double tick_s = 0.0;
   };
 
@@ -24,8 +25,8 @@ class SiteConsole {
 
   /// No force from the next tick on is asked for.
   [[nodiscard]] bool insisted() const noexcept { return exchange_->end.insisted(); }
-  /// What is pressed at this tick. `state` is that of the site at which the person is, after the tick before; `heard`
-  /// whether the other one was heard by then.
+  /// What is pressed at this tick. `state` is that of the operator's site, after the tick before; `heard`
+  /// whether a packet of the other site was received by then.
   control::SiteRequests step(const station::Tick& tick, control::SiteState state, bool heard) noexcept;
   /// What the operator marked at this tick, after `step`.
   [[nodiscard]] std::optional<EpisodeMark> mark() const noexcept { return mark_; }
@@ -51,7 +52,7 @@ class SiteConsole {
   std::int64_t now_ns_ = 0;
   std::int64_t second_ends_ns_ = 0;
   double time_s_ = 0.0;
-  double heard_s_ = 0.0;  ///< since the other site was heard first
+  double heard_s_ = 0.0;  ///< since the first packet of the other site
   bool leaving_ = false;
   double leaving_s_ = 0.0;
 };

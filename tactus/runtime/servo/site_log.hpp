@@ -18,7 +18,7 @@
 
 namespace tactus::runtime {
 
-/// Where sites that run leave every tick: a stream for each topic, for a log and for whoever else looks on. Null
+/// Where running sites leave every tick: a stream for each topic, for the log and all other observers. Null
 /// streams take nothing.
 struct SiteStreams {
   using Site = telemetry::RecordStream<SiteLogRecord>;
@@ -63,14 +63,14 @@ struct SiteStreams {
   }
 };
 
-/// What a log says about itself: a name, and values by their keys.
+/// The metadata of a log: a name, and values by their keys.
 using LogMetadata = std::map<std::string, std::map<std::string, std::string>>;
 
-/// The log of sites that run, written beside the servo thread: all that goes into `SiteStreams` or `JointStreams`.
+/// The log of running sites, written on a thread of its own: all that goes into `SiteStreams` or `JointStreams`.
 class SiteLog {
  public:
-  /// Opens `folder/log.mcap`, which takes all that goes into the streams from now on; the folder is made. `about` says
-  /// what ran; the log also states when its times start, by the wall clock. `most_bytes` and errors as in
+  /// Opens `folder/log.mcap`, which takes all that goes into the streams from now on; the folder is made. `about`
+  /// states what ran; the log also states when its times start, by the wall clock. `most_bytes` and errors as in
   /// `LogWriter::create`.
   template <class Streams>
   static Result<SiteLog> create(const std::filesystem::path& folder, const Streams& streams, const LogMetadata& about,

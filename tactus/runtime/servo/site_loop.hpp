@@ -19,11 +19,11 @@ class SiteLoop {
   struct Settings {
     link::Endpoint::Settings link;
     double duration_s = 0.0;   ///< 0 for no end
-    bool arm_at_once = false;  ///< the master, as soon as it hears the slave for the first time
+    bool arm_at_once = false;  ///< the master, as soon as it receives the first packet of the slave
   };
 
-  /// `exchange` must outlive the loop. A device that is not simulated stands behind a guard, and needs limits that
-  /// somebody chose. Errors: what is wrong with the parameters, the device or the link.
+  /// `exchange` must outlive the loop. A device that is not simulated is behind a device guard, and its limits
+  /// must be set. Errors: what is wrong with the parameters, the device or the link.
   static Result<SiteLoop> make(const station::TeleoperatorParams& params, const Settings& settings,
                                SiteExchange& exchange, SiteDevice device);
 

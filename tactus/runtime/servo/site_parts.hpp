@@ -39,13 +39,13 @@ Result<JointSupervisedSite> make_supervised_site(const station::ArmTeleoperatorP
 double force_step_limit_N(const station::TeleoperatorParams& params, control::SiteRole role,
                           const station::DeviceLimits& limits);
 
-/// What a log says of a thing: values by their keys.
+/// What a log states about one thing: values by their keys.
 using Words = std::map<std::string, std::string>;
 
-/// Limits of a device as a log carries them, and back; what is no number there is 0.
+/// Limits of a device as a log has them, and back; a value there that is not a number is 0.
 Words in_words(const station::DeviceLimits& limits);
 station::DeviceLimits limits_in(const Words& words);
-/// The same of several joints, under `joint_1` and on. Errors: `missing` where a limit of one of them is no number.
+/// The same of several joints, under `joint_1` and on. Errors: `missing` where one of the limits is not a number.
 Words in_words(const Joints<station::DeviceLimits>& limits);
 Result<Joints<station::DeviceLimits>> limits_in(const Words& words, std::size_t joints);
 

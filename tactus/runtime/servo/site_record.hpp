@@ -46,7 +46,7 @@ struct SiteTickRecord : control::SiteRecord {
 };
 
 /// One tick of one axis, or of one joint of several: what was read, and what was given. Positions and forces are
-/// positive toward the environment unless said otherwise.
+/// positive toward the environment unless stated otherwise.
 struct AxisRecord : control::HandEstimate {
   double position_m = 0.0;
   double read_force_N = 0.0;
@@ -90,8 +90,8 @@ struct SiteLogRecord : SiteTickRecord,
   }
 };
 
-/// One tick of one joint of a site of several, in the joint's unit: where a name says m and N, one that turns has rad
-/// and N m. What all joints share is in the `SiteTickRecord` of the tick.
+/// One tick of one joint of a site of several, in the joint's unit: where a name states m and N, one that turns has
+/// rad and N m. What all joints share is in the `SiteTickRecord` of the tick.
 struct JointLogRecord : AxisRecord, Part<control::Message, "received_">, Part<control::Message, "sent_"> {
   using Received = Part<control::Message, "received_">;
   using Sent = Part<control::Message, "sent_">;
@@ -182,7 +182,7 @@ struct PacketRecord : PacketHeadRecord, control::Message {
   static constexpr auto signals() { return joined(PacketHeadRecord::signals(), control::Message::signals()); }
 };
 
-/// What a packet says of one joint of several. What all joints share is in the `PacketHeadRecord`.
+/// The part of a packet that belongs to one joint of several. What all joints share is in the `PacketHeadRecord`.
 struct PacketJointRecord : control::Message {
   std::int64_t tick = 0;
   static constexpr auto signals() {
@@ -221,7 +221,7 @@ JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site
                         const station::Step<Site>& done) noexcept;
 
 /// The same of sites without supervision, `JointMasterSite` or `JointSlaveSite`, which are active from the first tick
-/// on: `heard` is what the other one told them.
+/// on: `heard` is what they received from the other site.
 template <class Site>
 SiteTickRecord recorded_bare(const station::Tick& tick, const Site& site, const station::Step<Site>& done) noexcept;
 template <class Site>

@@ -42,7 +42,7 @@ struct ToolForce {
 /// friction implicitly); forces on the tool and of end stops are located forces of ours, taken at the beginning of a
 /// step.
 ///
-/// A value: a copy goes on by itself, with equal bits under equal input. A step does not allocate.
+/// A value: a copy runs on its own, with equal bits under equal input. A step does not allocate.
 /// Source of the engine: E. Todorov, T. Erez, Y. Tassa, MuJoCo: A physics engine for model-based control, IROS 2012.
 class ArmPlant {
  public:
@@ -58,7 +58,7 @@ class ArmPlant {
   ArmPlant& operator=(ArmPlant other) noexcept;
   ~ArmPlant();
 
-  /// What the drives tell now, in their steps.
+  /// What the drives report now, in their steps.
   [[nodiscard]] ArmReading read() const;
   /// The drives obey from now on.
   void write(const ArmCommand& command);
@@ -66,7 +66,7 @@ class ArmPlant {
   /// One step of `Params::step_s` under the drives' law and a force on the tool.
   void step(const ToolForce& on_tool);
 
-  /// What no motor tells: of links, in rad and rad/s.
+  /// Not measured by any motor: of the links, in rad and rad/s.
   [[nodiscard]] JointVector link_position() const;
   [[nodiscard]] JointVector link_velocity() const;
   /// Torque on each link that bears what it weighs where it is, in N m, of an arm that rests.

@@ -19,7 +19,7 @@
 /// The shared memory of a plant that a process of its own owns: what lies in it, and who may be in it.
 namespace tactus::real_time {
 
-/// What happened in one tick of a simulated plant that no sensor tells: for metrics, never for a site.
+/// What happened in one tick of a simulated plant and no sensor measures: for metrics, never for a site.
 struct SimulatedTruth {
   std::int64_t tick = 0;             ///< of the plant since its start: this one has ended; 0 is the start itself
   double tip_position_m = 0.0;       ///< of the slave, when the tick ended
@@ -30,7 +30,7 @@ struct SimulatedTruth {
   double touched_after_s = 0.0;      ///< when, from the begin of that substep
 };
 
-/// What a plant says of itself once.
+/// What a plant states about itself once.
 struct PlantFacts {
   station::DeviceLimits master;
   station::DeviceLimits slave;
@@ -50,7 +50,7 @@ struct PlantLayout {
   static constexpr std::size_t configuration_bytes = 32768;
   static constexpr std::uint64_t truth_ticks = 16384;  ///< that a controller may fall behind
 
-  std::atomic<std::uint64_t> magic;       ///< written last: from then on the facts stand
+  std::atomic<std::uint64_t> magic;       ///< written last: from then on the facts are complete
   std::atomic<std::uint64_t> owner;       ///< process
   std::atomic<std::uint64_t> controller;  ///< process; 0 once it has left in good order
   station::DeviceLimits master_limits;
@@ -70,14 +70,15 @@ static_assert(std::is_standard_layout_v<PlantLayout> && std::is_trivially_destru
 
 /// A mapped segment, as its owner or as its one controller; unmapped, and by its owner removed, at the end.
 ///
-/// Who is in it is told by locks on its file (open file description locks), which the kernel takes back from a process
-/// however it ends: a segment whose owner is dead is known as such, and a process number that was given away again
-/// deceives nobody. Of the same user only, and of mode 0600: what another user made, or others can write, is refused
-/// before it is mapped. A process of the same user can still cut the file short; both sides survive that and are told
+/// Locks on its file (open file description locks) show who uses it. The kernel takes them back from a process
+/// however it ends: a segment whose owner is dead is known as such, and a process number that was given to another
+/// process misleads nobody. Of the same user only, and of mode 0600: what another user made, or others can write, is
+/// refused before it is mapped. A process of the same user can still cut the file short; both sides survive that and
+/// notice it
 /// (`SharedMapping`). Nothing here is real-time safe but `operator->`, `is_cut` and `request`.
 class PlantSegment {
  public:
-  /// As the owner. A segment of that name whose owner is dead is replaced; who has that mapped finds it silent.
+  /// As the owner. A segment of that name whose owner is dead is replaced; for its controller it has timed out.
   ///
   /// Errors: `syntax` for a name that is not 1 to 64 letters, digits, `-` or `_`; `inconsistent` where a living process
   /// owns it, another user has a file of that name, or a configuration is too long; `failed` where the system gives no
@@ -86,7 +87,7 @@ class PlantSegment {
 
   /// As the controller.
   ///
-  /// Errors: `syntax` as above; `missing` where there is none of that name, or its owner is dead; `inconsistent` where
+  /// Errors: `syntax` as above; `missing` if no segment has that name, or its owner is dead; `inconsistent` where
   /// it is of another user or open to others, of another version, or has a controller; `failed` where the system does
   /// not let it be mapped.
   static Result<PlantSegment> attach(const std::string& name);

@@ -18,11 +18,11 @@ namespace tactus::real_time {
 
 /// How a plant went so far.
 struct PlantStatus {
-  std::uint64_t readings = 0;                                 ///< told
-  std::uint64_t commands = 0;                                 ///< that controllers told
+  std::uint64_t readings = 0;                                 ///< sent
+  std::uint64_t commands = 0;                                 ///< received from controllers
   std::int64_t missed = 0;                                    ///< ticks
   std::int64_t taps = 0;                                      ///< begun
-  std::int64_t released = 0;                                  ///< taps in which a device let go of its controller
+  std::int64_t released = 0;                                  ///< taps in which a device released its force
   station::ReleaseCause cause = station::ReleaseCause::none;  ///< of the last of them
   std::int64_t held_back = 0;                                 ///< commands that were beyond what a device may
   bool cut = false;  ///< another process has cut the shared memory: nobody can drive any more
@@ -31,9 +31,9 @@ struct PlantStatus {
 
 /// The owner's side of a plant: simulated devices in real time, on a servo thread, for a controller in another process.
 ///
-/// A tap begins with the first command after the controller has asked for it; until then the plant stands at the start.
-/// While ticks are missed, it goes on under the command that holds, as hardware does. Without a controller it stands
-/// still; with one that has fallen silent, or asked for what the devices do not give, it goes on without a force.
+/// A tap begins with the first command after the controller has requested it; until then the plant waits at the start.
+/// While ticks are missed, it continues with the last command, as hardware does. Without a controller it does not move;
+/// if the controller times out, or requests what the devices cannot give, it continues without a force.
 class PlantServer {
  public:
   /// `silence` is how long commands may stay away. Errors: those of the experiment and of `PlantSegment::create`;

@@ -39,8 +39,8 @@ class RealTimeArmTap {
   static Result<RealTimeArmTap> make(const experiments::ArmPairSetup& setup, const experiments::ArmTap& tap,
                                      ArmTapStreams* streams = nullptr);
 
-  /// One tick, the sites first, then the arms. At ticks that were missed before it, the arms go on under the commands
-  /// that their drives have. False once the tap is over. Real-time safe.
+  /// One tick, the sites first, then the arms. At ticks that were missed before it, the arms continue under the
+  /// commands that their drives have. False once the tap is over. Real-time safe.
   bool step(const station::Tick& tick) noexcept;
   [[nodiscard]] const experiments::ArmTapRun& run() const noexcept { return run_; }
 

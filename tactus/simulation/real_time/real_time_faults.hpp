@@ -14,8 +14,8 @@ namespace tactus::real_time {
 /// Ticks that the machine misses are a stall of both sites in each of these runs, and are judged as such. No cut lasts
 /// longer than a second.
 ///
-/// `listen` is called between the two: it says where the end may be asked for from then on. Where it is, the runs that
-/// were over by then are told, and that there should be more.
+/// `listen` is called between the two and returns where the end can be requested from then on. If it is requested, the
+/// outcome has the runs that were over by then, and states that there should be more.
 ///
 /// Errors: those of the experiment `faults`, of the servo thread and of `listen`.
 Result<experiments::Outcome> run_faults_in_real_time(const experiments::Request& request,

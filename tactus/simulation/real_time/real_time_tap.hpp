@@ -13,10 +13,10 @@
 
 namespace tactus::real_time {
 
-/// One tap through simulated devices in real time: the step of a servo thread. Where the tap is over, or was ended from
-/// outside, the sites let go at the rate limits of their gates; these ticks are no part of the tap and have no record.
+/// One tap through simulated devices in real time: the step of a servo thread. When the tap is over, or was ended from
+/// outside, the sites release at the rate limits of their gates; these ticks are no part of the tap and have no record.
 ///
-/// The record of a tick is complete when the plant has gone on to the next. Ticks that were missed have a record too,
+/// The record of a tick is complete when the plant has advanced to the next. Ticks that were missed have a record too,
 /// with the readings and commands that held. With devices of its own and none missed, the records are bit for bit those
 /// of virtual time.
 class RealTimeTap {
@@ -24,7 +24,7 @@ class RealTimeTap {
   /// With devices of its own. Errors: those of plants and sites.
   static Result<std::unique_ptr<RealTimeTap>> make(const experiments::Tap& tap, double observation_s,
                                                    const runtime::RealTimeStreams& streams = {});
-  /// Through a plant that outlives it and stands at the start of the tap. Where the plant is lost, the sites let go at
+  /// Through a plant that outlives it and is at the start of the tap. If the plant is lost, the sites release at
   /// the rate limit and the tap is over. Errors: those of the sites.
   static Result<std::unique_ptr<RealTimeTap>> make(const experiments::Tap& tap, double observation_s, TapPlant& plant,
                                                    const runtime::RealTimeStreams& streams = {});
@@ -33,7 +33,7 @@ class RealTimeTap {
 
   /// One tick; false once the tap is over and no site commands a force. Real-time safe.
   bool step(const station::Tick& tick) noexcept;
-  /// From the next tick on the sites let go. Of the thread that steps. Real-time safe.
+  /// From the next tick on the sites release. For the thread that steps. Real-time safe.
   void end() noexcept { over_ = true; }
   /// No force at once, as the last thing. Of the thread that steps. Real-time safe.
   void release() noexcept { loop_.release(); }
@@ -47,7 +47,7 @@ class RealTimeTap {
               const simulation::Clock& clock, TapPlant& plant, station::BareTeleoperator loop);
   /// Ends the open record with what the plant did, and hands it on; false once the tap is over.
   bool complete(const SimulatedTruth& truth) noexcept;
-  /// One tick on the way to no force; false at its end.
+  /// One tick of the ramp to zero force; false at its end.
   bool step_to_rest(const station::Tick& own) noexcept;
 
   simulation::Clock clock_;

@@ -8,12 +8,12 @@
 
 namespace tactus::real_time {
 
-/// Steps the sites of a run in real time once more on what its log says that they read and were asked, and on what came
-/// over the link, with the configuration that the log carries, and compares all that they give bit for bit. The first
+/// Steps the sites of a run in real time again on the logged readings and requests, and on the packets that came
+/// over the link, with the configuration in the log, and compares all their outputs bit for bit. The first
 /// difference ends it. The run is one of taps, of one site over a network, or of both sites, of one axis or of several
 /// joints. Of a log that was cut, as by a program that was killed, what all its topics have is replayed.
 ///
-/// Errors: those of reading a log; `missing` where it has none of the topics `/sites`, `/site`, `/master/site` and
+/// Errors: those of reading a log; `missing` where it lacks the topics `/sites`, `/site`, `/master/site` and
 /// `/slave/site`, or lacks what a later version replays with; `inconsistent` where steps are missing in it or its
 /// signals are others; `out_of_bounds` and others where its configuration makes no teleoperator.
 Result<runtime::Replay> replay(const std::filesystem::path& log);

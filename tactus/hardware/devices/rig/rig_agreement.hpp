@@ -26,7 +26,7 @@ class RigAgreement {
                          const station::DescribedArms& arms);
 
   [[nodiscard]] control::Agreement agreement() const;
-  /// What a person at the site of this role has to know of a mismatch, in one sentence with the remedy.
+  /// What the operator at the site of this role must know about a mismatch, in one sentence with the remedy.
   [[nodiscard]] std::string describe(const runtime::SiteMismatch& mismatch, control::SiteRole role) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace tactus::devices {
 
 /// The pair, or the one side of it that the file has, with its joints in the order of the arm's, from the base on, then
-/// those that the arm does not have, such as that of a gripper. They are told by their names.
+/// those that the arm does not have, such as that of a gripper. Joints are matched by name.
 ///
 /// Errors, whose parameters are those of the rig's file: `inconsistent` for a joint that the arm does not have where
 /// the experiment has no gains for it (`rig.gripper`), one that slides or gives no force, and limits below the gains

@@ -29,7 +29,7 @@ struct RigSecond {
   control::MotionCheck::Evidence fault_evidence;  ///< what a position and a reported velocity disagreed by
   control::SupportFinding support;                ///< while its support is what stops a side, of the leader first
   bool support_of_leader = false;
-  arm_control::MotorWatch::Found motor;  ///< a motor that did not do as commanded, while a side stands
+  arm_control::MotorWatch::Found motor;  ///< a motor that did not do as commanded, when a side is stopped
   bool motor_of_leader = false;
   double most_torque = 0.0;  ///< of any motor of the second, either way
   double farthest = 0.0;     ///< of a joint from its leader

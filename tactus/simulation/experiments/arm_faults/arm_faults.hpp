@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
-/// Two supervised arms in virtual time, a person who taps a surface through them, and one fault: the table of faults of
-/// arms. Gates and supervision are those of `[rig]`, as they stand before motors.
+/// Two supervised arms in virtual time, an operator who taps a surface through them, and one fault: the table of faults
+/// of arms. Gates and supervision are those of `[rig]`, as real motors have them.
 namespace tactus::experiments {
 
 /// What all runs have in common, checked.
@@ -32,9 +32,9 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
 
 /// Plan number `index` of a row.
 FaultPlan draw_arm_plan(const FaultRow& row, const ArmFaultBench& bench, std::int64_t index);
-/// Runs one plan. Until a site carries its arm it stands on something. Once the drives of a site have no power its arm
-/// falls, and who clears the fault catches it first: what is promised of places, speeds and energy is promised of an
-/// arm that has power, forces on people always.
+/// Runs one plan. An arm lies on a rest until its site compensates gravity. Once the drives of a site have no power its
+/// arm falls, and whoever clears the fault catches it first. The bounds on positions, velocities and energy hold for an
+/// arm that has power; the bounds on forces on people always hold.
 FaultOutcome run_arm_fault(const ArmFaultBench& bench, const FaultPlan& plan);
 /// The rule that a run broke, in words; empty where it kept everything that its row asks for.
 std::string_view broken_arm_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,

@@ -15,11 +15,11 @@
 namespace tactus::experiments {
 
 /// One site of a run: its arm, the process that it runs in, and what a witness saw of both. Until its site
-/// carries it the arm stands on something.
+/// compensates gravity, the arm lies on a rest.
 template <class SupervisedSite>
 class FaultyArm {
  public:
-  /// Drives that hear nothing for so long let go, as the watchdogs of a rig's motors.
+  /// Drives that receive nothing for this time release, as the watchdogs of a rig's motors.
   static constexpr double drive_watchdog_s = 0.05;
 
   FaultyArm(FaultSite at, SupervisedSite first, SupervisedSite again, const arm_plants::ArmDevice& device,
@@ -54,14 +54,14 @@ class FaultyArm {
   SupervisedSite site;
   std::vector<SupervisedSite> restarted;  ///< what a process that is started again runs
   FaultProcessOf<control::JointPacket> process;
-  simulation::JointPacketRelay inbox;        ///< the way from the other site
-  PacketWitness sent;                        ///< what this site told, and what the other applied of it
+  simulation::JointPacketRelay inbox;        ///< the channel from the other site
+  PacketWitness sent;                        ///< what this site sent, and what the other applied of it
   Joints<station::DeviceReading> sensed{};   ///< at this tick, faults included
   Joints<station::DeviceCommand> commanded;  ///< last, before any fault of the drives
   bool loses_power = false;                  ///< at this tick, by the fault
   double worked_J = 0.0;                     ///< on who touches its tool, at the tick before
 
-  /// What the drives report at this tick, without any fault of theirs. An arm that stands on something does not move,
+  /// What the drives report at this tick, without any fault of theirs. An arm that lies on a rest does not move,
   /// whatever its motors give.
   [[nodiscard]] Joints<station::DeviceReading> read(std::int64_t tick) {
     Joints<station::DeviceReading> read = arm.read({.number = tick});
@@ -73,7 +73,7 @@ class FaultyArm {
     }
     return read;
   }
-  /// The site looks at what its motors report, beside what it commanded last.
+  /// The site compares what its motors report with what it commanded last.
   void looks(std::int64_t elapsed_ticks) noexcept { station::watch(motors, sensed, commanded, elapsed_ticks); }
   /// A command of the site reaches its drives.
   void obeys(ArmFaultInjection& injection, const Joints<station::DeviceCommand>& command) {
@@ -81,7 +81,7 @@ class FaultyArm {
     unheard_s_ = 0.0;
     drive(injection);
   }
-  /// No command comes at this tick: the drives go on by the one they have, until they have waited too long.
+  /// No command comes at this tick: the drives continue with the one they have, until they have waited too long.
   void goes_on(ArmFaultInjection& injection, double tick_s) {
     unheard_s_ += tick_s;
     drive(injection);
@@ -89,15 +89,15 @@ class FaultyArm {
   /// Whether the drives of all joints have power.
   [[nodiscard]] bool has_power() const { return commanded[0].enabled && !waited_too_long() && !loses_power; }
 
-  /// Somebody sees to it that an arm stands which has no power: at rest, where it is, until its site carries it. `made`
-  /// is what such an arm is made of.
+  /// Somebody puts an arm that has no power onto a rest: it does not move until its site compensates gravity. `made`
+  /// are the parameters of such an arm.
   void is_caught(const arm_plants::ArmPlant::Params& made) {
     if (stands_ || has_power()) return;
     arm = {*arm_plants::ArmPlant::make(made, arm.plant().link_position()), arm.limits()};
     stands_ = true;
     carried_s_ = 0.0;
   }
-  /// Once a tick, after the site: what it stood on is taken away once all of its weight has come in, over `blend_s`.
+  /// Once a tick, after the site: the rest is taken away when gravity compensation has ramped in, over `blend_s`.
   void is_carried(double tick_s, double blend_s) {
     carried_s_ = has_power() ? carried_s_ + tick_s : 0.0;
     stands_ = stands_ && carried_s_ <= blend_s;
@@ -110,8 +110,8 @@ class FaultyArm {
     worked_J -= on_tool.force_N.dot(arm.plant().tool().position_m - before_m);
   }
 
-  /// The witness at each motor: what the site made it give at this tick, its law where the site believes the joint to
-  /// be.
+  /// The witness at each motor: the torque that the site commanded at this tick, its law at the joint position that the
+  /// site knows.
   void witness(FaultOutcome& outcome) {
     step_N_ = 0.0;
     for (std::size_t i = 0; i < motors_.size(); ++i) {
@@ -166,7 +166,8 @@ class FaultyArm {
       truth.motor_m_per_s = velocity[at];
     }
   }
-  /// How far the tool has sunk while its site carries the arm and does not follow, and fallen since it has no power.
+  /// How far the tool has sunk while its site compensates gravity and does not follow, and fallen since it has no
+  /// power.
   struct Sunk {
     double carried_m = 0.0;
     double fell_m = 0.0;
@@ -216,7 +217,7 @@ struct ArmDrives {
   }
 };
 
-/// The way of a site: what waits for its process, and whatever the network makes of what it says.
+/// The channel of a site: the packets that wait for its process, and what the network does to those that it sends.
 template <class Here, class There>
 struct ArmFaultWay {
   Here& here;

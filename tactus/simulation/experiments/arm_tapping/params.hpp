@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-/// A person taps a stiff surface through two robot arms.
+/// An operator taps a stiff surface through two robot arms.
 namespace tactus::experiments {
 
 using station::ArmClockParams;
@@ -20,7 +20,7 @@ using station::ArmPairParams;
 using station::ArmParams;
 using station::ArmRigParams;
 
-/// Which law the surface pushes back with: those of `mechanics::ContactLaw` that let go.
+/// The law of the surface's force: those of `mechanics::ContactLaw` that do not pull.
 enum class SurfaceLaw { kelvin_voigt, hunt_crossley };
 constexpr auto enumerators(SurfaceLaw) {
   return std::array{Enumerator{SurfaceLaw::kelvin_voigt, "kelvin-voigt"},
@@ -56,7 +56,7 @@ struct ArmWallParams {
   }
 };
 
-/// What a fault in one of two arms may do to the person who holds the leader and to whoever is at the follower's tool.
+/// What a fault in one of two arms may do to the operator at the leader and to whoever is at the follower's tool.
 struct ArmHarmBounds : HarmBounds {
   double sank_m = 0.025;
   static constexpr auto fields() {

@@ -16,7 +16,7 @@ namespace tactus::experiments {
 /// All that a pair is made of, read and checked.
 struct CoupledArmsSetup {
   ArmVibrationParams params;
-  arm::Chain::Params believed;       ///< what the host believes of both arms: without causes
+  arm::Chain::Params believed;       ///< the host's model of both arms: without causes
   arm_plants::ArmPlant::Params arm;  ///< with the causes that both arms have
   arm::JointVector start;
   std::size_t joint = 0;                           ///< that is looked at, from 0
@@ -32,7 +32,7 @@ struct CoupledArmsRecord {
   double follower_rad = 0.0;
   double leader_rad_per_s = 0.0;  ///< as the host reads it
   double follower_rad_per_s = 0.0;
-  double leader_N_m = 0.0;  ///< of the motors, less what carries the arm
+  double leader_N_m = 0.0;  ///< of the motors, less gravity compensation
   double follower_N_m = 0.0;
 };
 
@@ -52,7 +52,7 @@ struct CoupledArmsResult {
   ShakingArms moving;       ///< in the middle of the reach; where nobody holds it, from half a second after the push on
   ShakingArms resting;      ///< in the last second
   bool diverged = false;    ///< left its place by more than 2 rad, or is not finite
-  double delay_s = 0.0;     ///< how old what a drive is told of the other's joint is, the mean of both ways
+  double delay_s = 0.0;     ///< age of what a drive receives of the other's joint, the mean of both directions
   double weight_N_m = 0.0;  ///< of the links on that joint, in the end
   std::vector<CoupledArmsRecord> records;
 
@@ -63,7 +63,7 @@ struct CoupledArmsResult {
 /// give the same result, bit for bit. Errors: what a part refuses.
 Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup);
 
-/// What linear theory says of the pair: without play, and for the joint's motor alone within its play.
+/// What linear theory predicts for the pair: without play, and for the joint's motor alone within its play.
 struct CoupledArmsTheory {
   std::optional<arm_control::DelayLimit> arms;
   std::optional<arm_control::DelayLimit> motor;
