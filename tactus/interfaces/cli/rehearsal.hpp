@@ -1,8 +1,8 @@
 #pragma once
 
 #include <tactus/hardware/devices/rig/rig.hpp>
+#include <tactus/kernel/control/site_supervisor.hpp>
 #include <tactus/kernel/core/result.hpp>
-#include <tactus/kernel/core/signals.hpp>
 #include <tactus/kernel/station/described_arms.hpp>
 
 #include <memory>
