@@ -47,8 +47,7 @@ struct ExportColumns {
 /// Codes in words: `0 configure, 1 align`.
 std::string text_of(const CodeWords& codes);
 
-/// What a channel states in addition to its columns (`joint`, `elbow`), its keys as identifiers and its texts one line
-/// each.
+/// What a channel states besides its columns (`joint`, `elbow`), its keys as identifiers and its texts one line each.
 std::vector<std::pair<std::string, std::string>> about_channel(const LogTable& table);
 
 /// A time of a log in seconds of Unix time, to 0.3 us.

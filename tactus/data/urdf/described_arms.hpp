@@ -21,8 +21,7 @@ using Urdfs = std::function<Result<UrdfText>(const std::string& name)>;
 /// Files, from `folder` on. Errors: those of `text_of`.
 Urdfs urdfs_below(const std::filesystem::path& folder);
 
-/// Reads the URDF and adds what a URDF does not contain, from `params`. Errors: `missing` without a URDF; those of its
-/// text and of `parse`.
+/// Reads the URDF and adds the rest from `params`. Errors: `missing` without a URDF; those of its text and of `parse`.
 Result<station::DescribedArm> describe_arm(const station::ArmParams& params, const Urdfs& urdfs);
 
 /// Both arms, checked. The models of gravity and friction that the sites use are exact. Errors: those of `describe_arm`

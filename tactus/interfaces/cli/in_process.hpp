@@ -28,8 +28,8 @@ using InProcessProgress = std::function<bool(double done)>;
 /// name.
 ///
 /// Refused with an error (`inconsistent`): the commands that drive devices, measure the machine or serve others
-/// (`device`, `doctor`, `emulate`, `plant`, `rehearse`, `relay`, `serve`), `--plugin`, and what runs at the real clock, for these
-/// take signals and threads of the process. `progress` may be empty, and must not run another command.
+/// (`device`, `doctor`, `emulate`, `plant`, `rehearse`, `relay`, `serve`), `--plugin`, and what runs at the real clock,
+/// for these take signals and threads of the process. `progress` may be empty, and must not run another command.
 ///
 /// Any thread; commands of several threads run one after the other. What is thrown, for lack of memory or of a thread,
 /// is an error (`failed`). Not real-time safe.

@@ -84,7 +84,7 @@ struct ArmPairParams : ArmParams {
                              "The follower, if it differs from the leader: then all of it is described here. "
                              "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
                              "commands joint i of the follower, angle for angle, unless control.follower.coupling "
-                             "is tool.")});
+                             "says tool.")});
   }
 };
 
@@ -147,8 +147,7 @@ struct ArmSupportParams {
   }
 };
 
-/// Gates and supervision between the sites and the motors of a rig, and in `tactus faults`. Taps in virtual time run
-/// without them.
+/// Gates and supervision before the motors of a rig, and in `tactus faults`. Taps in virtual time run without them.
 struct ArmRigParams {
   control::SafetyGate::Params leader_gate;
   control::SafetyGate::Params follower_gate;

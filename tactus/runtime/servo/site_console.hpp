@@ -13,10 +13,9 @@ namespace tactus::runtime {
 class SiteConsole {
  public:
   struct Settings {
-    double duration_s = 0.0;   ///< 0 for no end
-    bool arm_at_once = false;  ///< once the other site was received for `listen_before_arming_s`
-    double listen_before_arming_s =
-        0.0;  ///< the slave follows a number that rises, so it must have received one before
+    double duration_s = 0.0;              ///< 0 for no end
+    bool arm_at_once = false;             ///< once the other site was received for `listen_before_arming_s`
+    double listen_before_arming_s = 0.0;  ///< the slave follows a number that rises, so it must have one before
     double tick_s = 0.0;
   };
 

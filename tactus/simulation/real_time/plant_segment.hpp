@@ -71,10 +71,9 @@ static_assert(std::is_standard_layout_v<PlantLayout> && std::is_trivially_destru
 /// A mapped segment, as its owner or as its one controller; unmapped, and by its owner removed, at the end.
 ///
 /// Locks on its file (open file description locks) show who uses it. The kernel takes them back from a process
-/// however it ends: a segment whose owner is dead is known as such, and a process number that was given to another
-/// process misleads nobody. Of the same user only, and of mode 0600: what another user made, or others can write, is
-/// refused before it is mapped. A process of the same user can still cut the file short; both sides survive that and
-/// notice it
+/// however it ends: a segment whose owner is dead is known as such, and a reused process number misleads nobody. Of the
+/// same user only, and of mode 0600: what another user made, or others can write, is refused before it is mapped. A
+/// process of the same user can still cut the file short; both sides survive that and notice it
 /// (`SharedMapping`). Nothing here is real-time safe but `operator->`, `is_cut` and `request`.
 class PlantSegment {
  public:

@@ -166,8 +166,7 @@ class FaultyArm {
       truth.motor_m_per_s = velocity[at];
     }
   }
-  /// How far the tool has sunk while its site compensates gravity and does not follow, and fallen since it has no
-  /// power.
+  /// How far the tool has sunk while its site compensates gravity without following, and fallen since it has no power.
   struct Sunk {
     double carried_m = 0.0;
     double fell_m = 0.0;
