@@ -229,8 +229,8 @@ void add_export(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--topic", options->topic, "Only this topic; csv needs it if the log has several");
   CLI::Option* const wide = verb->add_flag(
       "--wide", options->wide,
-      "Of the log of a rig, one CSV for each episode: a row for each instant, a column for each signal of "
-      "each joint");
+      "Write a rig's log as one CSV for each episode, with a row for each instant and a column for each signal of a "
+      "joint");
   verb->add_option("--rate", options->rate_Hz, "Rows per second of a wide table; 50 by default")
       ->type_name("HZ")
       ->needs(wide);

@@ -361,7 +361,7 @@ void add_identify_frf(CLI::App& identify_command, const std::string& name, const
       ->type_name("N");
   verb->add_option("--lower-Hz", options->lower_Hz, "Lowest frequency to report")->type_name("HZ");
   verb->add_option("--upper-Hz", options->upper_Hz, "Highest frequency to report")->type_name("HZ");
-  verb->add_flag("--compare", options->compare, "Report whether the recordings show one linear device");
+  verb->add_flag("--compare", options->compare, "Report whether one linear device explains all recordings");
   options->results.own_files = {"response.csv"};
   add_output_options(*verb, options->results, command,
                      "Folder for report.html, results.json, response.csv and the figure");

@@ -46,10 +46,10 @@ void add_observer_options(CLI::App& verb, ObserverOptions& options) {
       ->type_name("[[HOST:]PORT]")
       ->expected(0, 1)
       ->group(group);
-  CLI::Option* const ros2 =
-      verb.add_flag("--ros2", options.ros2,
-                    "Publish to ROS 2 nodes under CRTK names; alone, run the taps and accept operator/servo_jp too")
-          ->group(group);
+  CLI::Option* const ros2 = verb.add_flag("--ros2", options.ros2,
+                                          "Publish to ROS 2 nodes under CRTK names; without --realtime and --site, "
+                                          "operator/servo_jp can move the hand")
+                                ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")
       ->needs(ros2)

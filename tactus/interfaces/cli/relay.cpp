@@ -201,7 +201,7 @@ void add_relay(CLI::App& app, const std::string& command, int& status) {
   address("--slave", options->slave, "Address on which the slave listens");
   address("--for-slave", options->for_slave, "Address on which the relay listens for the slave: the slave's --peer");
   verb->add_option("--mean-burst", options->mean_burst,
-                   "Mean number of packets lost in a row; up to 1 each loss is independent")
+                   "Mean number of packets lost in a row; at 1 or less, losses are independent")
       ->check(real_between(0.0, 10000.0));
   verb->add_option("--duplicate-fraction", options->duplicate_fraction, "Share of the packets that are sent twice")
       ->check(real_between(0.0, 1.0));

@@ -223,9 +223,10 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
 constexpr const char* supervised_group = "With supervision, in real time";
 
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
-  verb.add_option("--device", options.devices,
-                  "Drive this device, which the program must provide, in place of the simulated one, at both sites or "
-                  "at one; or the leader and follower of a rig file or of one of its pairs (with --site, one of them)")
+  verb.add_option(
+          "--device", options.devices,
+          "Rig file, or one of its pairs: leader and follower are driven, with --site one of them. Or the name of "
+          "a device that the program provides, for both sites or for one")
       ->type_name("[SITE=]NAME|RIG.toml[:PAIR]")
       ->group(supervised_group)
       ->allow_extra_args(false);
