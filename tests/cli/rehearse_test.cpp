@@ -67,10 +67,13 @@ TEST_F(Rehearse, DamiaoMotorsStartWithinTheirLimitsAndAreDrivenAsThoseOfTheFile)
 
 TEST_F(Rehearse, ALeaderOfDynamixelServosLeadsAnArmOfDamiaoMotors) {
   std::string rig =
-      side("leader", "@1", "dynamixel", "xm430-w350", 2, "") + side("follower", "@2", "damiao", "DM4310", 2, "");
+      side("leader", "@1", "dynamixel", "xm430-w210", 1, "") + side("follower", "@2", "damiao", "DM4310", 1, "");
   rig.insert(rig.find("port = "), "bits_per_s = 4000000\n");
+  // What such a servo can do.
+  rig.replace(rig.find("velocity_limit_rad_per_s = 8.0"), 30, "velocity_limit_rad_per_s = 4.0");
+  rig.replace(rig.find("torque_limit_Nm = 1.5"), 21, "torque_limit_Nm = 0.6");
   static_cast<void>(rehearse(rig, "--arm --duration-s 5",
-                             {"arm.leader: 2 emulated dynamixel motors at /dev/pts/",
+                             {"arm.leader: 1 emulated dynamixel motor at /dev/pts/",
                               "leader active, follower active (none), ", "status 0\n"}));
 }
 
