@@ -84,7 +84,7 @@ struct ArmPairParams : ArmParams {
                              "The follower, if it differs from the leader: then all of it is described here. "
                              "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
                              "commands joint i of the follower, angle for angle, unless control.follower.coupling "
-                             "says tool.")});
+                             "is tool.")});
   }
 };
 
