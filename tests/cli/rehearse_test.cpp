@@ -87,11 +87,11 @@ TEST_F(Rehearse, FeetechServosLeadAndFollowWithoutAGuard) {
 }
 
 TEST_F(Rehearse, AFaultOfOneSideIsReportedAsThatOfARealMotorWouldBe) {
-  static_cast<void>(rehearse(
-      pair("damiao", "DM4310", 2, ""), "--arm --duration-s 5 --fault follower:hot-drive:2@4",
-      {"follower active", "; follower: joint_2 has the fault hot", "Ended in a fault: follower", "status 1\n"}));
+  static_cast<void>(rehearse(pair("damiao", "DM4310", 2, ""), "--arm --duration-s 5 --fault follower:hot-drive:2@4",
+                             {"follower active", "leader hold, follower fault (gate), ", "; follower: joint_2 ",
+                              "Ended in a fault: follower", "status 1\n"}));
   static_cast<void>(rehearse(pair("damiao", "DM4310", 2, ""), "--arm --duration-s 5 --fault leader:wrong-scale:1",
-                             {"arm.leader.joint_1.model: motor 1 (DM4310): its register 22 (VMAX) reads ",
+                             {"arm.leader.joint_1.motor: motor 1 (DM4310): its register 22 (VMAX) reads ",
                               "tactus: rig.toml: it is not clean, so nothing was driven", "status 1\n"}));
 }
 
