@@ -82,14 +82,7 @@ Result<const RigPair*> pair_of(const Rig& rig, const std::string& name, std::opt
   }
   if (!found->follower) return &*found;
   for (const devices::RigJoint& joint : found->follower->joints) {
-    if (joint.joint.gives_force) continue;
-    return rig.locate(
-        {.code = ErrorCode::inconsistent,
-         .parameter = join(joint.path, "model"),
-         .message = "a " + joint.motor.model +
-                    " takes no command of force, so it can lead and not follow: swap leader and follower, "
-                    "or watch it",
-         .place = {}});
+    if (Check cannot = refuse_undrivable(*found->follower, joint)) return rig.locate(*std::move(cannot));
   }
   return &*found;
 }
