@@ -44,6 +44,8 @@ sed 's/^torque_limit_Nm = 5.0.*/&\nfails_after = 5000/' "$folder/patient.toml" >
 drive "$folder/throws.toml" throws
 grep -q 'the driver threw in exchange: the robot reported a collision' "$folder/throws.txt" ||
   fail 'the reason of a driver that threw is not printed' "$folder/throws.txt"
+grep -q 'leader fault, follower fault (gate), most torque 0.00.*its driver has ended' "$folder/throws.txt" ||
+  fail 'a driver that threw did not end the force of both arms' "$folder/throws.txt"
 
 sed 's/^torque_limit_Nm = 5.0.*/&\nblocks_after = 6000/' "$rig" >"$folder/blocks.toml"
 drive "$folder/blocks.toml" blocks

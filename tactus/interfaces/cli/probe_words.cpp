@@ -23,8 +23,11 @@ std::string words_of(const control::ProbeReport& found, const devices::RigJoint&
              "or "
              "duration_s (of an arm: its torque in rig.probe_torque)";
     case control::ProbeVerdict::astray:
-      return begins + "it moved by " + travel(found.moved_m) + " under " + force + ", beyond " + travel(found.most_m) +
-             " or the same way for either sign: keep your hand off it; if it is light, lower the probe's force_N";
+      return begins + "it moved by " + travel(found.moved_m) + " under " + force +
+             (found.moved_m > found.most_m
+                  ? ", beyond " + travel(found.most_m) +
+                        ": if it is light, lower the probe's force_N, or hold it lightly"
+                  : ", the same way for either sign: keep your hand off it until it is tested");
   }
   return {};
 }

@@ -41,7 +41,7 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
   const std::string joint(joint_of(side, trouble.joint).name());
   switch (trouble.what) {
     case Trouble::bus_ended:
-      return place + "its port was closed";
+      return place + (side.bus.kind == devices::BusKind::plugged ? "its driver has ended" : "its port was closed");
     case Trouble::bus_refused:
       return place + "its motors differ from the rig file";
     case Trouble::late:

@@ -108,6 +108,8 @@ Check refuse_unclean(const Rig& rig, const std::vector<const RigSide*>& sides, L
 
 /// A side that is driven. The guard ends after the port is closed.
 struct Driven {
+  std::string side;
+  bool told = false;  ///< why its link ended by itself
   std::optional<RigGuard> guard;
   std::unique_ptr<devices::MotorLink> link;
   std::unique_ptr<MotorBusDevice> device;
@@ -128,7 +130,7 @@ Result<std::unique_ptr<devices::MotorLink>> start_guarded(const Rig& rig, const 
 }
 
 Result<Driven> drive(const Rig& rig, const RigSide& side) {
-  Driven driven;
+  Driven driven{.side = side.path, .guard = {}, .link = {}, .device = {}};
   auto link = has_watchdog(side.bus.kind) ? start(side.bus) : start_guarded(rig, side, driven.guard);
   if (!link) return rig.locate(side, link.error());
   driven.link = *std::move(link);
@@ -138,6 +140,15 @@ Result<Driven> drive(const Rig& rig, const RigSide& side) {
   if (!device) return device.error();
   driven.device = *std::move(device);
   return driven;
+}
+
+/// Reports once why a link has ended.
+void tell_why_ended(Driven& driven, LineWriter& errors) {
+  if (driven.told || driven.link->running()) return;
+  const Check problem = driven.link->problem();
+  if (!problem) return;
+  driven.told = true;
+  errors.say("tactus: " + driven.side + ": " + describe(*problem) + "\n");
 }
 
 /// Takes the power from all motors and ends their links. Errors: `failed` where a motor did not report in time that it
@@ -150,9 +161,7 @@ Check switch_off(std::array<std::optional<Driven>, 2>& driven, const std::vector
     const RigSide& side = *sides[i];
     driven[i]->device.reset();
     driven[i]->link->stop();
-    if (const Check problem = driven[i]->link->problem()) {
-      errors.say("tactus: " + side.path + ": " + describe(*problem) + "\n");
-    }
+    tell_why_ended(*driven[i], errors);
     for (const devices::PoweredMotor& one : driven[i]->link->powered_motors()) {
       all_off = false;
       errors.say("tactus: " + describe_powered(side, one) + "\n");
@@ -230,6 +239,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     take_seconds();
     for (auto& side : around.driven) {
       if (side && side->guard) side->guard->look();
+      if (side) tell_why_ended(*side, around.errors);
     }
     usleep(between_looks_us);
   }
