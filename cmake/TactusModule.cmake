@@ -2,7 +2,7 @@
 #
 # Declares the library target tactus::NAME from the current folder, tactus/COMPONENT/FOLDER. Headers sit beside their
 # sources and are included as <tactus/COMPONENT/FOLDER/thing.hpp>. LIGHT: what it computes, it leaves to other modules. WORDS: it computes nothing that anybody
-# waits for. TYPES_MEMORY: it gives a type to memory that came without one, so the sanitizer looks how that is aligned.
+# waits for. It is static, or shared with BUILD_SHARED_LIBS. TYPES_MEMORY: it gives a type to memory that came without one, so the sanitizer looks how that is aligned.
 
 find_program(TACTUS_CCACHE ccache)
 if(TACTUS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
@@ -105,7 +105,7 @@ function(tactus_module name)
     set(kind INTERFACE)
     add_library(${target} INTERFACE)
   else()
-    add_library(${target} STATIC ${arg_SOURCES})
+    add_library(${target} ${arg_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_options> ${arg_LINK_PRIVATE})
     if(arg_LIGHT)
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_light>)
@@ -116,8 +116,11 @@ function(tactus_module name)
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_typed>)
     endif()
     tactus_compile_together(${target})
-    # For libtactus.so. A function of a library that could be replaced by one of the same name would not be inlined.
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    # For libtactus.so, plug-ins and BUILD_SHARED_LIBS. A function of a library that could be replaced by one of the same
+    # name would not be inlined. A shared library exports all of its classes, for users derive from and instantiate them.
+    # No version promises a binary interface of C++ (docs/versioning.md), so each has a SONAME of its own.
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION}
+                                               SOVERSION ${PROJECT_VERSION} INSTALL_RPATH "$ORIGIN")
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
   endif()
   add_library(tactus::${name} ALIAS ${target})

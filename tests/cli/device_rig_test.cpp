@@ -109,6 +109,25 @@ TEST_F(DeviceRig, MotorsThatAreNotTheStatedOnesAreToldWithTheirLine) {
   EXPECT_TRUE(says(elsewhere, "arm.leader: another motor of this bus is wrong: check all of it.\n")) << elsewhere.out;
 }
 
+/// As `tactus run` refuses it, in the same words.
+TEST_F(DeviceRig, AFollowerThatTakesNoForceIsNotClean) {
+  std::string follower =
+      "[arm.follower]\nbus = \"feetech\"\nport = \"@1\"\n"
+      "[arm.follower.elbow]\nmotor = 1\nmodel = \"sts3215\"\nlower_rad = -1.5\nupper_rad = 1.5\n"
+      "velocity_limit_rad_per_s = 3.0\n";
+  const Outcome follows = device({"feetech --motors 1"}, follower, "check rig.toml");
+  EXPECT_EQ(follows.status, 1);
+  EXPECT_TRUE(says(follows,
+                   "Not clean; no motor got power.\nrig.toml:6:9: arm.follower.elbow.model: a sts3215 takes no command "
+                   "of force, so it can lead and not follow: swap leader and follower"))
+      << follows.out << follows.err;
+  for (auto at = follower.find("follower"); at != std::string::npos; at = follower.find("follower", at)) {
+    follower.replace(at, 8, "leader");
+  }
+  const Outcome leads = device({"feetech --motors 1"}, follower, "check rig.toml");
+  EXPECT_EQ(leads.status, 0) << leads.out << leads.err;
+}
+
 TEST_F(DeviceRig, AWrongBitRateIsFoundAndTheRightOneTold) {
   const Outcome rate = device({"dynamixel --bits-per-s 57600 --deaf-otherwise"}, servos, "check rig.toml");
   EXPECT_EQ(rate.status, 1);

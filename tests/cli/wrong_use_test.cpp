@@ -75,6 +75,13 @@ TEST_F(WrongUse, NoCommandAnUnknownOneAndAnUnknownOption) {
   expect({{"schema", "tapping", "--verbose"}, 2, {"--verbose"}});
 }
 
+TEST_F(WrongUse, APlugInThatCannotBeLoadedBeforeAndAfterTheCommand) {
+  expect({{"--plugin", "no.so", "device", "check", "rig.toml"}, 2, {"no.so", "cannot be loaded"}});
+  expect({{"device", "check", "rig.toml", "--plugin", "no.so"}, 2, {"no.so", "cannot be loaded"}});
+  expect({{"device", "check", "--plugin=no.so", "rig.toml"}, 2, {"no.so", "cannot be loaded"}});
+  expect({{"device", "check", "rig.toml", "--plugin"}, 2, {"--plugin"}});
+}
+
 TEST_F(WrongUse, AnOldNameOfAnOptionIsRefusedWithItsNewOne) {
   expect({{"serve", "--duration", "1"}, 2, {"'--duration' is now called --duration-s"}});
   expect({{"device", "watch", "rig.toml", "--for", "1"}, 2, {"'--for' is now called --duration-s"}});

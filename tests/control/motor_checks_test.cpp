@@ -207,6 +207,56 @@ TEST(SignProbe, ADeviceThatGoesTooFarOrIsMovedBySomebodyElseDoesNotPass) {
   EXPECT_EQ(SignProbe::make({.least_m = 0.01, .most_m = 0.01}, tick).error().parameter, "most_m");
 }
 
+/// Joints from a trigger to an arm's shoulder, in kg m², by one set of parameters: that of examples/rigs/joints.toml.
+/// A free mass moves by F·T²/(50·m).
+TEST(SignProbe, ADeviceThatDoesNotMoveIsTriedWithTwiceTheForceUpToTheMost) {
+  const SignProbe::Params params{
+      .force_N = 0.2, .most_force_N = 1.5, .duration_s = 0.2, .least_m = 0.002, .most_m = 0.2};
+  struct Case {
+    Device device;
+    ProbeVerdict verdict;
+    double force_N;  ///< of the last trial
+  };
+  const Case cases[] = {{{.mass_kg = 0.0025, .friction_N = 0.0}, ProbeVerdict::passed, 0.2},
+                        {{.mass_kg = 0.07, .friction_N = 0.0}, ProbeVerdict::passed, 0.2},
+                        {{.mass_kg = 0.15, .friction_N = 0.0}, ProbeVerdict::passed, 0.4},
+                        {{.mass_kg = 0.3, .friction_N = 0.0}, ProbeVerdict::passed, 0.8},
+                        {{.mass_kg = 0.5, .friction_N = 0.0}, ProbeVerdict::passed, 1.5},
+                        {{.mass_kg = 0.7, .friction_N = 0.0}, ProbeVerdict::still, 1.5},
+                        {{.mass_kg = 0.03, .friction_N = 0.5}, ProbeVerdict::passed, 1.5},
+                        {{.mass_kg = 0.3, .friction_N = 0.0, .gain = -1.0}, ProbeVerdict::reversed, 0.8},
+                        {{.gain = 0.0}, ProbeVerdict::still, 1.5}};
+  for (const Case& one : cases) {
+    SignProbe element = SignProbe::make(params, tick).value();
+    Device device = one.device;
+    double largest_N = 0.0, time_s = 0.0;
+    for (; element.verdict() == ProbeVerdict::none && time_s < 2.0; time_s += tick_s) {
+      const double force_N = element.step({.probing = true, .position_m = device.read_m()});
+      largest_N = std::max(largest_N, std::fabs(force_N));
+      device.push(force_N);
+    }
+    SCOPED_TRACE(one.device.mass_kg);
+    EXPECT_EQ(element.verdict(), one.verdict);
+    EXPECT_LE(largest_N, one.force_N);
+    EXPECT_LE(time_s, SignProbe::longest_s(params) + tick_s);
+    element.step({});
+    EXPECT_EQ(element.report().verdict, one.verdict) << "kept after the trial";
+    EXPECT_NEAR(element.report().force_N, one.force_N, 1e-12);
+    if (one.verdict == ProbeVerdict::still) {
+      EXPECT_LT(element.report().moved_m, params.least_m);
+    }
+    if (one.force_N > 0.2 && one.device.friction_N == 0.0) {
+      EXPECT_LT(element.report().moved_m, 4.0 * params.least_m) << "none is thrown";
+    }
+  }
+  SignProbe::Params once = params;
+  once.force_N = 0.4;
+  once.most_force_N = 0.0;
+  EXPECT_EQ(SignProbe::longest_s(params), 4 * 0.2);
+  EXPECT_EQ(SignProbe::longest_s(once), 0.2);
+  EXPECT_EQ(SignProbe::make({.force_N = 0.3, .most_force_N = 0.2}, tick).error().parameter, "most_force_N");
+}
+
 TEST(SignProbe, WhereNobodyAsksOrTheTrialIsGivenUpThereIsNoForceAndNoVerdict) {
   SignProbe element = SignProbe::make({.force_N = 0.3}, tick).value();
   for (int i = 0; i < 100; ++i) EXPECT_EQ(element.step({.position_m = 0.01 * i}), 0.0);

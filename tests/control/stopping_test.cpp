@@ -247,6 +247,11 @@ TEST(Probe, AMotorTheWrongWayRoundADeadOneAndOneThatGoesTooFarEndInHoldWithTheir
       EXPECT_EQ(pair.slave.state(), SiteState::hold);
       EXPECT_EQ(at_the_master ? pair.master_cause() : pair.slave_cause(), one.cause);
       EXPECT_EQ(at_the_master ? pair.slave_cause() : pair.master_cause(), SiteCause::peer);
+      const ProbeFinding found = at_the_master ? pair.master.probe_finding() : pair.slave.probe_finding();
+      const ProbeFinding of_other = at_the_master ? pair.slave.probe_finding() : pair.master.probe_finding();
+      EXPECT_NE(found.report.verdict, ProbeVerdict::none);
+      EXPECT_EQ(found.report.force_N, probe_N);
+      EXPECT_EQ(of_other.report.verdict, ProbeVerdict::none) << "it only went with the other";
       const double stands_at_m = device.position_m;
       device = sound;
       device.position_m = stands_at_m;
@@ -254,6 +259,8 @@ TEST(Probe, AMotorTheWrongWayRoundADeadOneAndOneThatGoesTooFarEndInHoldWithTheir
       pair.arm();
       pair.step(1500);
       EXPECT_TRUE(pair.active()) << "mended and armed again";
+      EXPECT_EQ(pair.master.probe_finding().report.verdict, ProbeVerdict::none);
+      EXPECT_EQ(pair.slave.probe_finding().report.verdict, ProbeVerdict::none);
     }
   }
 }

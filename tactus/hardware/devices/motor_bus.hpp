@@ -40,8 +40,8 @@ constexpr auto enumerators(MotorFault) {
 /// The status of a motor that has not reported one.
 inline constexpr std::int64_t no_status = -1;
 
-/// What a motor reported last, in its own sense of turning, at the output of its gear. Positions continue where the
-/// wire's number wraps. Trivially copyable: it crosses from the bus thread to the tick.
+/// What a motor reported last, in its own sense of turning (see `MotorJoint`), at the output of its gear. Positions
+/// continue where the wire's number wraps. Trivially copyable: it crosses from the bus thread to the tick.
 struct MotorReading {
   double position_rad = 0.0;
   double velocity_rad_per_s = 0.0;

@@ -27,6 +27,12 @@ inline constexpr Unit degree_celsius{"degC", "_C"};
 ///     gains of the motor's law = gains of the joint's / gear²
 ///
 /// The motor's numbers are those at the output of its own gear. Where the joint slides, read m for rad and N for N m.
+///
+/// The sign of a joint, stated here for all headers: a joint has one positive sense, in which its position grows; of an
+/// arm it is that of the URDF's axis, and leader and follower have the same. Position, velocity, commanded and reported
+/// torque, and torque from outside are positive in that sense, so a positive torque of the motor moves a free joint up.
+/// `sign` turns position and torque together, so it cannot correct a motor that moves against its torque. Force sensors
+/// of one axis: `tactus/kernel/station/device.hpp`.
 struct MotorJoint {
   std::int64_t sign = 1;
   double offset_rad = 0.0;

@@ -64,6 +64,23 @@ void forget_empty_defaults(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) forget_empty_defaults(*verb);
 }
 
+/// The words with every `--plugin FILE` before the command, wherever it stands up to a `--`: what it brings must be
+/// there before the command reads a file that names it.
+std::vector<const char*> plugins_first(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + std::min(argc, 1)), others;
+  bool options = true;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    options = options && word != "--";
+    const bool apart = word == "--plugin" && i + 1 < argc;
+    const bool plugin = options && (apart || word.starts_with("--plugin="));
+    (plugin ? words : others).push_back(argv[i]);
+    if (plugin && apart) words.push_back(argv[++i]);
+  }
+  words.insert(words.end(), others.begin(), others.end());
+  return words;
+}
+
 /// What can have a place in a program that is not ours: it computes, and neither drives anything nor takes signals.
 Check refuse_in_process(int argc, const char* const* argv) {
   constexpr std::array programs{"device", "doctor", "emulate", "plant", "rehearse", "relay", "serve"};
@@ -82,9 +99,11 @@ Check refuse_in_process(int argc, const char* const* argv) {
 
 }  // namespace
 
-int run_words(const std::string& name, int argc, const char* const* argv) {
+int run_words(const std::string& name, int argc, const char* const* given) {
   std::string command = shell_word(name);
-  for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
+  for (int i = 1; i < argc; ++i) command += " " + shell_word(given[i]);
+  const std::vector<const char*> words = plugins_first(argc, given);
+  const char* const* const argv = words.data();
   command = report::printable(command);  // it stands in reports, and in model files as a comment of one line
   if (is_in_process()) {
     if (const auto error = refuse_in_process(argc, argv)) return report_error(name, *error);
@@ -103,7 +122,7 @@ int run_words(const std::string& name, int argc, const char* const* argv) {
              if (unloaded) throw CLI::RuntimeError(exit_status(*unloaded));
            }
          },
-         "Load a shared object that adds drivers for rig files; write it before COMMAND")
+         "Load a shared object that adds drivers for rig files; before or after COMMAND")
       ->type_name("FILE.so")
       ->expected(1)
       ->take_all();

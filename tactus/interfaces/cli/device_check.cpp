@@ -220,8 +220,9 @@ Result<bool> print(const std::vector<Checked>& all, const CheckOptions& options)
     for (const Checked& checked : all) {
       std::cout << "\n";
       if (checked.side != nullptr) {
-        std::cout << checked.side->path << ": " << bus_name(*checked.bus) << " at "
-                  << report::printable(checked.bus->port) << "\n";
+        std::cout << checked.side->path << ": " << bus_name(*checked.bus);
+        if (!checked.bus->port.empty()) std::cout << " at " << report::printable(checked.bus->port);
+        std::cout << "\n";
       }
       std::cout << table_of(checked).to_text();
     }

@@ -3,6 +3,7 @@
 #include <tactus/data/report/page.hpp>
 #include <tactus/data/report/text.hpp>
 #include <tactus/interfaces/cli/internal/link_json.hpp>
+#include <tactus/interfaces/cli/probe_words.hpp>
 #include <tactus/interfaces/cli/rig_report.hpp>
 #include <tactus/interfaces/cli/support_words.hpp>
 #include <tactus/runtime/servo/servo_presentation.hpp>
@@ -40,7 +41,7 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
   const std::string joint(joint_of(side, trouble.joint).name());
   switch (trouble.what) {
     case Trouble::bus_ended:
-      return place + "its port was closed";
+      return place + (side.bus.kind == devices::BusKind::plugged ? "its driver has ended" : "its port was closed");
     case Trouble::bus_refused:
       return place + "its motors differ from the rig file";
     case Trouble::late:
@@ -106,6 +107,17 @@ std::string words_of_support(const RigSecond& second, const RigPair& pair) {
   return cli::words_of(second.support, support_joint(second, pair));
 }
 
+/// The joint whose motor did not pass its sign probe.
+const devices::RigJoint& probe_joint(const RigSecond& second, const RigPair& pair) {
+  return joint_of(second.probe_of_leader ? *pair.leader : *pair.follower, second.probe.joint);
+}
+
+/// What its sign probe found, as the rest of a line.
+std::string words_of_probe(const RigSecond& second, const RigPair& pair) {
+  if (second.probe.report.verdict == control::ProbeVerdict::none) return {};
+  return cli::words_of(second.probe.report, probe_joint(second, pair));
+}
+
 /// What a motor did otherwise than it was commanded, as the rest of a line.
 std::string words_of_motor(const RigSecond& second, const RigPair& pair) {
   using arm_control::MotorFinding;
@@ -156,7 +168,7 @@ std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<
   if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
   return line + words_of_fault(second, pair) + words_of_motor(second, pair) + words_of_support(second, pair) +
-         advice(second, pair, only) + "\n";
+         words_of_probe(second, pair) + advice(second, pair, only) + "\n";
 }
 
 std::string fault_of(const RigRun& run, const RigPair& pair) {
@@ -184,8 +196,9 @@ std::string summary_of(const RigRun& run, const RigPair& pair) {
            report::fixed(1e3 * run.link->round_trip_max_s, 2) + " ms, " + std::to_string(run.link->link.sent) +
            " packets sent, " + std::to_string(run.link->link.inbound.counted) + " came";
   }
-  const std::string fault = fault_of(run, pair);
-  return (fault.empty() ? "" : "Ended in a fault: " + fault + ". ") + std::to_string(totals.ticks) +
+  const std::string fault = fault_of(run, pair), probe = words_of_probe(run.last, pair);
+  return (fault.empty() ? "" : "Ended in a fault: " + fault + ". ") +
+         (probe.empty() ? "" : "Not coupled at the end" + probe + ". ") + std::to_string(totals.ticks) +
          " control cycles in " + report::fixed(totals.duration_s, 1) + " s, " + std::to_string(totals.active_ticks) +
          " of them coupled; armed " + std::to_string(totals.armings) + " times, held " + std::to_string(totals.holds) +
          " times, a device late in " + std::to_string(totals.late_ticks) + ", not responding in " +
@@ -228,6 +241,17 @@ nlohmann::ordered_json json_of_support(const RigSecond& second, const RigPair& p
           {"torque_limit", found.limit_N}};
 }
 
+/// The motor that did not pass its sign probe; null where none is what stops a side.
+nlohmann::ordered_json json_of_probe(const RigSecond& second, const RigPair& pair) {
+  const control::ProbeReport& found = second.probe.report;
+  if (found.verdict == control::ProbeVerdict::none) return nullptr;
+  return {{"verdict", name_of(found.verdict)},
+          {"joint", probe_joint(second, pair).path},
+          {"torque", found.force_N},
+          {"moved", found.moved_m},
+          {"needed", found.needed_m}};
+}
+
 nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
   const devices::RigTotals& totals = run.totals;
   nlohmann::ordered_json document{
@@ -260,6 +284,7 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
     one.update({{"gate_fault", name_of(second.fault)},
                 {"gate_joint", gate_joint(second, pair)},
                 {"support", json_of_support(second, pair)},
+                {"probe", json_of_probe(second, pair)},
                 {"most_torque", second.most_torque},
                 {"farthest", second.farthest},
                 {"joint", farthest_joint(second, pair).name()},

@@ -83,14 +83,7 @@ Result<const RigPair*> pair_of(const Rig& rig, const std::string& name, std::opt
   }
   if (!found->follower) return &*found;
   for (const devices::RigJoint& joint : found->follower->joints) {
-    if (joint.joint.gives_force) continue;
-    return rig.locate(
-        {.code = ErrorCode::inconsistent,
-         .parameter = join(joint.path, "model"),
-         .message = "a " + joint.motor.model +
-                    " takes no command of force, so it can lead and not follow: swap leader and follower, "
-                    "or watch it",
-         .place = {}});
+    if (Check cannot = refuse_undrivable(*found->follower, joint)) return rig.locate(*std::move(cannot));
   }
   return &*found;
 }
@@ -116,6 +109,8 @@ Check refuse_unclean(const Rig& rig, const std::vector<const RigSide*>& sides, L
 
 /// A side that is driven. The guard ends after the port is closed.
 struct Driven {
+  std::string side;
+  bool told = false;  ///< why its link ended by itself
   std::optional<RigGuard> guard;
   std::unique_ptr<devices::MotorLink> link;
   std::unique_ptr<MotorBusDevice> device;
@@ -137,7 +132,7 @@ Result<std::unique_ptr<devices::MotorLink>> start_guarded(const Rig& rig, const 
 
 /// Emulated motors end with this program, and need no guard.
 Result<Driven> drive(const Rig& rig, const RigSide& side, bool emulated) {
-  Driven driven;
+  Driven driven{.side = side.path, .guard = {}, .link = {}, .device = {}};
   const bool guarded = !emulated && !has_watchdog(side.bus.kind);
   auto link = guarded ? start_guarded(rig, side, driven.guard) : start(side.bus);
   if (!link) return rig.locate(side, link.error());
@@ -150,6 +145,15 @@ Result<Driven> drive(const Rig& rig, const RigSide& side, bool emulated) {
   return driven;
 }
 
+/// Reports once why a link has ended.
+void tell_why_ended(Driven& driven, LineWriter& errors) {
+  if (driven.told || driven.link->running()) return;
+  const Check problem = driven.link->problem();
+  if (!problem) return;
+  driven.told = true;
+  errors.say("tactus: " + driven.side + ": " + describe(*problem) + "\n");
+}
+
 /// Takes the power from all motors and ends their links. Errors: `failed` where a motor did not report in time that it
 /// is off; each of these has its line.
 Check switch_off(std::array<std::optional<Driven>, 2>& driven, const std::vector<const RigSide*>& sides,
@@ -160,9 +164,7 @@ Check switch_off(std::array<std::optional<Driven>, 2>& driven, const std::vector
     const RigSide& side = *sides[i];
     driven[i]->device.reset();
     driven[i]->link->stop();
-    if (const Check problem = driven[i]->link->problem()) {
-      errors.say("tactus: " + side.path + ": " + describe(*problem) + "\n");
-    }
+    tell_why_ended(*driven[i], errors);
     for (const devices::PoweredMotor& one : driven[i]->link->powered_motors()) {
       all_off = false;
       errors.say("tactus: " + describe_powered(side, one) + "\n");
@@ -240,6 +242,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     take_seconds();
     for (auto& side : around.driven) {
       if (side && side->guard) side->guard->look();
+      if (side) tell_why_ended(*side, around.errors);
     }
     usleep(between_looks_us);
   }

@@ -22,6 +22,15 @@ constexpr auto enumerators(ProbeVerdict) {
                     Enumerator{ProbeVerdict::astray, "astray"}};
 }
 
+/// What the latest trial saw, kept after it has ended.
+struct ProbeReport {
+  ProbeVerdict verdict = ProbeVerdict::none;
+  double force_N = 0.0;   ///< peak of the latest force
+  double moved_m = 0.0;   ///< farthest from home under it, either way
+  double needed_m = 0.0;  ///< least_m
+  double most_m = 0.0;
+};
+
 /// Gives a motor a small known force and looks where the device goes, before anybody relies on it. The force has lobes
 /// of one length, (1 − cos)/2 in shape, with the signs + − 0 − +: out and back, a pause, and the same the other way.
 /// The impulse of each half is zero, so a free mass m is at rest after it, F·T²/(50 m) away after the first, T being
@@ -31,11 +40,17 @@ constexpr auto enumerators(ProbeVerdict) {
 /// moved, mass, spring or damper, its first motion is along the force; where it goes later is not, so it is not looked
 /// at. Beyond `most_m` the force ends at once.
 ///
+/// A joint that is heavier, or rubs more, needs a larger force. If the device does not move, the trial is repeated with
+/// twice the force, up to `most_force_N`. So a free mass moves by less than 4·least_m in the trial that it passes,
+/// whatever its size, unless the first force is too large for it. The largest free mass that can pass is
+/// most_force_N·T²/(50·least_m).
+///
 /// The device must be free to move both ways, and not be moved by anything else by `least_m` in half of `duration_s`.
 class SignProbe {
  public:
   struct Params {
     double force_N = 0.0;
+    double most_force_N = 0.0;
     double duration_s = 0.1;
     double least_m = 1e-4;
     double most_m = 0.01;
@@ -43,8 +58,11 @@ class SignProbe {
       return List{
           field("force_N", &Params::force_N, units::newton, between(0.0, 100.0),
                 "Peak of the force with which a motor is tried on arming; more than friction holds; 0 is no trial."),
+          field("most_force_N", &Params::most_force_N, units::newton, between(0.0, 100.0),
+                "If the device does not move, it is tried again with twice the force, up to this one and to the gate's "
+                "force limit; 0: it is tried once."),
           field("duration_s", &Params::duration_s, units::second, positive_up_to(5.0),
-                "How long that takes, both ways together."),
+                "Duration of one trial, both ways together."),
           field("least_m", &Params::least_m, units::metre, positive_up_to(0.1),
                 "How far the device must move with the force, each way; several counts of its encoder."),
           field("most_m", &Params::most_m, units::metre, positive_up_to(1.0),
@@ -59,7 +77,7 @@ class SignProbe {
   /// The force in N for the motor.
   using Output = double;
 
-  /// Errors: `inconsistent` for a `most_m` that is not above `least_m`.
+  /// Errors: `inconsistent` for a `most_m` that is not above `least_m`, and for a `most_force_N` below `force_N`.
   static Result<SignProbe> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);
     if (params.most_m <= params.least_m) {
@@ -69,7 +87,21 @@ class SignProbe {
                               rounded_number(params.least_m) + " m: raise it or lower least_m",
                    .place = {}};
     }
+    if (params.most_force_N > 0.0 && params.most_force_N < params.force_N) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = "most_force_N",
+                   .message = rounded_number(params.most_force_N) + " N must be at least force_N, " +
+                              rounded_number(params.force_N) + " N: raise it, lower force_N, or write 0 for one trial",
+                   .place = {}};
+    }
     return SignProbe(params, dt);
+  }
+
+  /// How long it takes at most: every trial, until the force is `most_force_N`.
+  static double longest_s(const Params& params) noexcept {
+    double trials = 1.0;
+    for (double force_N = params.force_N; force_N > 0.0 && force_N < params.most_force_N; force_N *= 2.0) trials += 1.0;
+    return trials * params.duration_s;
   }
 
   /// Real-time safe.
@@ -80,8 +112,8 @@ class SignProbe {
     }
     if (verdict_ != ProbeVerdict::none) return 0.0;
     if (!begun_) {
-      home_m_ = turn_m_ = input.position_m;
-      begun_ = true;
+      begin(input.position_m);
+      report_ = {.needed_m = params_.least_m, .most_m = params_.most_m};
     } else {
       time_s_ += dt_s_ * static_cast<double>(input.elapsed_ticks);
     }
@@ -94,13 +126,25 @@ class SignProbe {
     begun_ = turned_ = false;
     went_ = {};
     time_s_ = home_m_ = turn_m_ = 0.0;
+    peak_N_ = params_.force_N;
   }
 
   /// Of the trial under way; none until it is over.
   [[nodiscard]] ProbeVerdict verdict() const noexcept { return verdict_; }
+  /// Of that trial, or of the one before if none is under way.
+  [[nodiscard]] const ProbeReport& report() const noexcept { return report_; }
 
  private:
-  SignProbe(const Params& params, Seconds dt) : params_(params), dt_s_(dt.value), lobe_s_(params.duration_s / 5.0) {}
+  SignProbe(const Params& params, Seconds dt)
+      : params_(params), dt_s_(dt.value), lobe_s_(params.duration_s / 5.0), peak_N_(params.force_N) {}
+
+  void begin(double position_m) noexcept {
+    home_m_ = turn_m_ = position_m;
+    time_s_ = 0.0;
+    went_ = {};
+    turned_ = false;
+    begun_ = true;
+  }
 
   void look(double position_m) noexcept {
     const bool second = time_s_ >= 3.0 * lobe_s_;
@@ -111,11 +155,20 @@ class SignProbe {
     const double moved_m = second ? turn_m_ - position_m : position_m - home_m_;
     int& went = went_[second ? 1 : 0];
     if (went == 0 && std::fabs(moved_m) >= params_.least_m) went = moved_m > 0.0 ? 1 : -1;
+    report_.force_N = peak_N_;
+    report_.moved_m = time_s_ == 0.0 ? 0.0 : std::max(report_.moved_m, std::fabs(position_m - home_m_));
     if (std::fabs(position_m - home_m_) > params_.most_m) {
       verdict_ = went_[0] < 0 && went_[1] <= 0 ? ProbeVerdict::reversed : ProbeVerdict::astray;
     } else if (time_s_ >= params_.duration_s) {
-      verdict_ = judge();
+      const ProbeVerdict found = judge();
+      if (found == ProbeVerdict::still && peak_N_ < params_.most_force_N) {
+        peak_N_ = std::min(2.0 * peak_N_, params_.most_force_N);
+        begin(position_m);
+        return;
+      }
+      verdict_ = found;
     }
+    report_.verdict = verdict_;
   }
 
   [[nodiscard]] ProbeVerdict judge() const noexcept {
@@ -129,12 +182,14 @@ class SignProbe {
     constexpr std::array signs{1.0, -1.0, 0.0, -1.0, 1.0};
     const double lobes = time_s_ / lobe_s_;
     const double sign = signs[std::min(static_cast<std::size_t>(lobes), signs.size() - 1)];
-    return sign * params_.force_N * 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * lobes));
+    return sign * peak_N_ * 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * lobes));
   }
 
   Params params_;
   double dt_s_;
   double lobe_s_;
+  double peak_N_;  ///< of the trial under way
+  ProbeReport report_;
   ProbeVerdict verdict_ = ProbeVerdict::none;
   bool begun_ = false;
   bool turned_ = false;        ///< the second half has begun

@@ -44,7 +44,7 @@ bool contradict(Checks& checks, const Gates& gates, const Sensors& sensors, std:
 }
 
 /// The supervision of each joint. A motor that gives next to no force, as that of a leader which is only read, is not
-/// tried: its sign can do no harm.
+/// tried: its sign can do no harm. No motor is tried with more than its gate lets through.
 template <class Params>
 auto supervision_of(const Params& params, SiteRole role) {
   auto all = member_of_each(params, &ControlParams::supervision);
@@ -52,7 +52,9 @@ auto supervision_of(const Params& params, SiteRole role) {
       [role](SupervisionParams& supervision, const ControlParams& joint) noexcept {
         constexpr double harmless_N = 1e-6;
         const SafetyGate::Params& gate = role == SiteRole::master ? joint.gate : joint.slave_gate;
-        if (gate.force_limit_N < harmless_N) supervision.probe.force_N = 0.0;
+        SignProbe::Params& probe = supervision.probe;
+        if (probe.most_force_N > gate.force_limit_N) probe.most_force_N = std::max(gate.force_limit_N, probe.force_N);
+        if (gate.force_limit_N < harmless_N) probe.force_N = probe.most_force_N = 0.0;
       },
       all, params);
   return all;

@@ -49,6 +49,8 @@ class SupervisedMasterOf {
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   /// How the support of the device comes in, and what was found wrong with it.
   [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return supervision_.support(); }
+  /// As of `SupervisionOf`.
+  [[nodiscard]] ProbeFinding probe_finding() const noexcept { return supervision_.probe_finding(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const Gated& site() const noexcept { return site_; }
@@ -96,6 +98,8 @@ class SupervisedSlaveOf {
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   /// How the support of the device comes in, and what was found wrong with it.
   [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return supervision_.support(); }
+  /// As of `SupervisionOf`.
+  [[nodiscard]] ProbeFinding probe_finding() const noexcept { return supervision_.probe_finding(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const Gated& site() const noexcept { return site_; }

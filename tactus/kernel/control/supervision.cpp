@@ -71,7 +71,7 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
     const SupervisionParams& own = joint_of(all, joint);
     if (auto error = signal::check(own, dt)) return under_joint<Payload>(joint, *std::move(error));
     if (auto error = check_shared(params, own)) return under_joint<Payload>(joint, *std::move(error));
-    if (own.probe.force_N > 0.0) tried_after_s += own.probe.duration_s;
+    if (own.probe.force_N > 0.0) tried_after_s += SignProbe::longest_s(own.probe);
   }
   if (session == 0) {
     return Error{.code = ErrorCode::out_of_bounds,
@@ -99,8 +99,9 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
                  .parameter = "answer_within_s",
                  .message = rounded_number(params.answer_within_s) + " s must be more than " +
                             (carried_after_s > params.blend_s ? "support.raise_s" : "blend_s") +
-                            " and probe.duration_s together, " + rounded_number(tried_after_s) +
-                            " s: a slave answers once its motor was tried",
+                            " and all trials of probe together, " + rounded_number(tried_after_s) +
+                            " s: a slave answers once its motor was tried; raise it, or write a smaller "
+                            "probe.most_force_N or probe.duration_s",
                  .place = {}};
   }
   const auto support =
@@ -241,6 +242,21 @@ SiteCause SupervisionOf<Payload>::probe_failed() const noexcept {
       },
       probe_);
   return cause;
+}
+
+template <class Payload>
+ProbeFinding SupervisionOf<Payload>::probe_finding() const noexcept {
+  ProbeFinding found;
+  const SiteCause cause = supervisor_.cause();
+  if (cause == SiteCause::none) return found;
+  std::size_t joint = 0;
+  for_each_joint(
+      [&found, &joint, cause](const SignProbe& probe) noexcept {
+        if (cause_of(probe.report().verdict) == cause) found = {.report = probe.report(), .joint = joint};
+        ++joint;
+      },
+      probe_);
+  return found;
 }
 
 template <class Payload>

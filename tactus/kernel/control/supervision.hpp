@@ -66,10 +66,16 @@ struct SupervisionParams {
         field(
             "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
             "How long the master waits for the slave to follow an arming before it gives it up and holds; longer than "
-            "the round trip, and with a sign probe than that, blend_s and probe.duration_s together."),
+            "the round trip, and with a sign probe than that, blend_s and all of its trials together."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "How long a force takes to come in when a site becomes active, and to go.")};
   }
+};
+
+/// A motor that did not pass its sign probe.
+struct ProbeFinding {
+  ProbeReport report;
+  std::size_t joint = 0;
 };
 
 /// The words of an enum and the numbers that stand for them in a log, behind `prefix`: "Why: 0 none, 1 started."
@@ -235,6 +241,8 @@ class SupervisionOf {
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
   /// The packet that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return newest_; }
+  /// Which joint did not pass the sign probe, while that is why the site does not follow; else no verdict.
+  [[nodiscard]] ProbeFinding probe_finding() const noexcept;
   /// Whether the site leaves what its gate or its controller latched, at this tick.
   [[nodiscard]] bool rearms() const noexcept;
   /// Everything that supervision itself knows; the rest is the site's to fill in.

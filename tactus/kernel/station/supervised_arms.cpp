@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 namespace tactus::station {
 
 namespace {
@@ -48,6 +50,35 @@ Result<Joints<control::SupervisionParams>> joint_supervision(const ArmRigParams&
   return each;
 }
 
+/// That the sign probe can move each joint of the arm, by its inertia at the pose at which it begins. The other joints
+/// are free here and nothing rubs, so that what is refused could pass nowhere near that pose.
+Check check_probes(const DescribedArm& described, const Joints<control::SupervisionParams>& supervision,
+                   const Joints<SafetyGate::Params>& gates) {
+  const auto chain = arm::Chain::make(described.arm.chain);
+  if (!chain) return chain.error();
+  const arm::JointMatrix mass = chain->mass_matrix(described.start);
+  const arm::JointMatrix mobility =
+      mass.llt().solve(arm::JointMatrix(arm::JointMatrix::Identity(mass.rows(), mass.cols())));
+  for (std::size_t i = 0; i < described.joints.size(); ++i) {
+    const control::SignProbe::Params& probe = supervision[i].probe;
+    const auto at = static_cast<Eigen::Index>(i);
+    const double inertia_kg_m2 = 1.0 / mobility(at, at);
+    const double torque_N_m = std::max(probe.force_N, probe.most_force_N);
+    const double needed_N_m = 50.0 * probe.least_m * inertia_kg_m2 / (probe.duration_s * probe.duration_s);
+    if (torque_N_m == 0.0 || torque_N_m >= needed_N_m) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "rig.probe_torque.joint_" + std::to_string(i + 1) + ".torque_N_m",
+                 .message = rounded_number(torque_N_m) + " N m cannot move " + described.joints[i] + ", of " +
+                            rounded_number(inertia_kg_m2) + " kg m2, by supervision.probe.least_m, " +
+                            rounded_number(probe.least_m) + " rad, within supervision.probe.duration_s, " +
+                            rounded_number(probe.duration_s) + " s: write from " + rounded_number(needed_N_m) +
+                            " N m and its friction up to the gate's limit, " + rounded_number(gates[i].force_limit_N) +
+                            " N m, or a longer duration_s",
+                 .place = {}};
+  }
+  return std::nullopt;
+}
+
 /// The damping that the drives run while a site is coupled, of each joint of its arm.
 Joints<double> own_damping(const ArmTeleoperatorParams& params, const DescribedArms& arms, bool leads) {
   const auto& sites = params.control;
@@ -81,7 +112,7 @@ void judge_support(const ArmTeleoperatorParams& params, const DescribedArms& arm
         {.own_damping_N_s_per_m = damping[i],
          .damping_limit_N_s_per_m = limits[i].damping_N_s_per_m,
          .force_limit_N = gates[i].force_limit_N,
-         .trial_force_N = probe.force_N},
+         .trial_force_N = std::max(probe.force_N, probe.most_force_N)},
         Seconds{1.0 / params.servo.rate_Hz});
   }
 }
@@ -118,10 +149,14 @@ Result<Begun> begin(const ArmTeleoperatorParams& params, const DescribedArms& ar
   auto supervised = joint_supervision(params.rig, joints);
   if (!supervised) return supervised.error();
   if (!start.tries_motors) {
-    for (control::SupervisionParams& joint : *supervised) joint.probe.force_N = 0.0;
+    for (control::SupervisionParams& joint : *supervised) joint.probe.force_N = joint.probe.most_force_N = 0.0;
   }
   Begun begun{
       .of_arm = of_arm, .tick = tick, .gates = joint_gates(gate, limits), .supervision = *std::move(supervised)};
+  if (start.tries_motors) {
+    const DescribedArm& arm = leads ? arms.leader : arms.follower;
+    if (Check weak = check_probes(arm, begun.supervision, begun.gates)) return *std::move(weak);
+  }
   if (start.judges_support) judge_support(params, arms, leads, begun.gates, limits, begun.supervision);
   return begun;
 }

@@ -362,6 +362,9 @@ TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {
             0U);
   EXPECT_EQ(
       refusal("rig.probe_torque.joint_3.torque_N_m=0").find("rig.supervision.probe.force_N: 0 N m tries no motor"), 0U);
+  const std::string weak = refusal("rig.probe_torque.joint_2.torque_N_m=0.001");
+  EXPECT_EQ(weak.find("rig.probe_torque.joint_2.torque_N_m: 0.001 N m cannot move joint_2, of "), 0U) << weak;
+  EXPECT_NE(weak.find(" up to the gate's limit, "), std::string::npos) << weak;
   EXPECT_EQ(refusal("control.method=four-channel").find("control.method: four-channel control is tried in virtual"),
             0U);
 }

@@ -1,4 +1,6 @@
 #include <tactus/data/configuration/document.hpp>
+#include <tactus/hardware/devices/rig/bus_kinds.hpp>
+#include <tactus/hardware/devices/rig/examination.hpp>
 #include <tactus/hardware/devices/rig/rig.hpp>
 #include <tactus/kernel/control/protective_limits.hpp>
 #include <tactus/kernel/signal/random.hpp>
@@ -93,6 +95,40 @@ TEST(RigChecks, OfEveryJointOfEveryShippedRigEveryCheckCanBeReachedAndJudgesTheR
     if (!joint.joint.gives_force) return;
     EXPECT_LE(gate.encoder.frozen_force_N, 1.5 * gate.force_limit_N) << where;
   });
+}
+
+/// `tactus run` refuses what this refuses, and `tactus device check` reports it.
+TEST(RigChecks, EveryShippedRigCanBeDrivenAndOfAllModelsThoseWithoutForceCanOnlyLead) {
+  for_each_joint_of_all([](const RigJoint& joint, const SafetyGate::Params&, const std::string& where) {
+    RigSide side;
+    side.path = joint.path.substr(0, joint.path.rfind('.'));
+    EXPECT_FALSE(refuse_undrivable(side, joint)) << where;
+  });
+  int models = 0;
+  for (const BusKind kind : {BusKind::damiao, BusKind::dynamixel, BusKind::feetech}) {
+    for (const std::string& model : models_of(kind)) {
+      const bool forceless = kind == BusKind::feetech && model.starts_with("sts");
+      const std::string bus = "bus = \"" + std::string(name_of(kind)) + "\"\nport = \"/dev/";
+      std::string text;
+      for (const std::string side : {"arm.leader", "arm.follower"}) {
+        text += "[" + side + "]\n" + bus + side + "\"\n[" + side + ".elbow]\nmotor = 1\nmodel = \"" + model +
+                "\"\nlower_rad = -1.5\nupper_rad = 1.5\nvelocity_limit_rad_per_s = 3.0\ntorque_limit_Nm = 0.01\n"
+                "torque_rate_limit_Nm_per_s = 50.0\n" +
+                (kind == BusKind::feetech && !forceless ? "torque_Nm_per_A = 0.8\n" : "");
+      }
+      const auto rig = Rig::parse(text, "rig.toml");
+      ASSERT_TRUE(rig) << model << ": " << describe(rig.error());
+      const RigPair& pair = rig->pairs().front();
+      EXPECT_FALSE(refuse_undrivable(*pair.leader, pair.leader->joints.front())) << model << " leads";
+      const Check follows = refuse_undrivable(*pair.follower, pair.follower->joints.front());
+      EXPECT_EQ(follows.has_value(), forceless) << model;
+      if (follows) {
+        EXPECT_EQ(follows->parameter, "arm.follower.elbow.model");
+      }
+      ++models;
+    }
+  }
+  EXPECT_GE(models, 10);
 }
 
 enum class Fault { none, all_frozen, frozen, half, twice, reversed, late };

@@ -49,8 +49,9 @@ class BlockingDriver {
   /// Connects, without torque. Errors: why the device cannot be used, with the remedy.
   virtual Check open() = 0;
   /// One cycle: sends a command to every motor and stores what it reports. Position (rad), velocity (rad/s), torque
-  /// (N m), temperature, fault and `enabled` of `readings` are yours; the time stamps are set by the caller. A motor
-  /// whose command is not `enabled` must have no torque. Errors: what ends the link.
+  /// (N m), temperature, fault and `enabled` of `readings` are yours; the time stamps are set by the caller. Both
+  /// are in the motor's own sense: a positive torque must move a free motor up (`MotorJoint` has the sign rule). A
+  /// motor whose command is not `enabled` must have no torque. Errors: what ends the link.
   virtual Check exchange(std::span<const MotorCommand> commands, std::span<MotorReading> readings) = 0;
   /// Removes all torque and disconnects. Called once after `open`, whether or not that succeeded.
   virtual void close() noexcept = 0;

@@ -202,6 +202,16 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   return problems;
 }
 
+Check refuse_undrivable(const RigSide& side, const RigJoint& joint) {
+  if (joint.joint.gives_force || key_of(side.path) != "follower") return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = join(joint.path, "model"),
+               .message = "a " + joint.motor.model +
+                          " takes no command of force, so it can lead and not follow: swap leader and follower, or "
+                          "only look at it with 'tactus device watch'",
+               .place = {}};
+}
+
 BusFinding examine(const Rig& rig, const RigSide& side) {
   auto examined = examine(side.bus);
   BusFinding found;
@@ -222,6 +232,9 @@ BusFinding examine(const Rig& rig, const RigSide& side) {
   for (std::size_t i = 0; i < side.joints.size(); ++i) {
     MotorFinding& motor = found.motors[i];
     for (Error& problem : motor.problems) problem = rig.locate(side, std::move(problem));
+    if (Check cannot = refuse_undrivable(side, side.joints[i])) {
+      motor.problems.push_back(rig.locate(*std::move(cannot)));
+    }
     if (!found.heard) continue;
     for (Error& problem : judge(side.joints[i], motor, rig.name()))
       motor.problems.push_back(rig.locate(std::move(problem)));

@@ -34,7 +34,13 @@ struct BusFinding {
 /// of `open_bus`; no thread. Blocks for a second, for ten at most.
 Result<BusFinding> examine(const StatedBus& stated);
 
-/// The same of a side of a rig, with what its joints make of it; every problem has the line of its key.
+/// Why `tactus run` cannot drive a joint of this side with any experiment, under the key of the file; no value where it
+/// can. A motor that takes no command of force can lead and not follow. Nothing is opened: `device check` and `run`
+/// both ask this.
+Check refuse_undrivable(const RigSide& side, const RigJoint& joint);
+
+/// The same of a side of a rig, with what its joints make of it; every problem has the line of its key. A
+/// joint that cannot be driven (`refuse_undrivable`) has that problem too.
 BusFinding examine(const Rig& rig, const RigSide& side);
 
 /// What is wrong with a joint whose motor reports that, under the key that it contradicts: outside of its limits, too

@@ -169,8 +169,11 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   note_troubles();
   note_fault();
   second_.support = {};
+  second_.probe = {};
   note_support(second_, pair_.sites().master(), true);
   note_support(second_, pair_.sites().slave(), false);
+  note_probe(second_, pair_.sites().slave(), false);
+  note_probe(second_, pair_.sites().master(), true);
   if (refused_) second_.cause = control::SiteCause::weight;
   for (std::size_t joint = 0; joint < scales_.size(); ++joint) {
     second_.most_torque = std::max({second_.most_torque, std::fabs(done.master.output.site[joint].motor_force_N),

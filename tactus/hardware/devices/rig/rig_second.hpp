@@ -5,6 +5,7 @@
 #include <tactus/kernel/arm_control/motor_watch.hpp>
 #include <tactus/kernel/control/safety_gate.hpp>
 #include <tactus/kernel/control/site_supervisor.hpp>
+#include <tactus/kernel/control/supervision.hpp>
 #include <tactus/kernel/control/support_raise.hpp>
 #include <tactus/runtime/servo/site_link.hpp>
 
@@ -29,6 +30,8 @@ struct RigSecond {
   control::MotionCheck::Evidence fault_evidence;  ///< what a position and a reported velocity disagreed by
   control::SupportFinding support;                ///< while its support is what stops a side, of the leader first
   bool support_of_leader = false;
+  control::ProbeFinding probe;  ///< while a motor that did not pass its sign probe is what stops a side
+  bool probe_of_leader = false;
   arm_control::MotorWatch::Found motor;  ///< a motor that did not do as commanded, when a side is stopped
   bool motor_of_leader = false;
   double most_torque = 0.0;  ///< of any motor of the second, either way
@@ -86,6 +89,14 @@ void note_support(RigSecond& second, const Site& site, bool of_leader) noexcept 
   if (!refused && site.cause() != control::SiteCause::support) return;
   second.support = site.support().found();
   second.support_of_leader = of_leader;
+}
+/// Notes the motor that did not pass its sign probe, while that stops its side.
+template <class Site>
+void note_probe(RigSecond& second, const Site& site, bool of_leader) noexcept {
+  const control::ProbeFinding found = site.probe_finding();
+  if (found.report.verdict == control::ProbeVerdict::none) return;
+  second.probe = found;
+  second.probe_of_leader = of_leader;
 }
 /// Notes a motor that does not do as it is commanded, the first one.
 inline void note_motor(RigSecond& second, const arm_control::MotorWatch::Found& found, bool of_leader) noexcept {

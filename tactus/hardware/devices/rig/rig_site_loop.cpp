@@ -126,7 +126,9 @@ void RigSiteLoop::step(Site& site, const station::Tick& tick, const control::Sit
   (leads() ? second_.follower : second_.leader) = heard.state;
   second_.cause = static_cast<control::SiteCause>(done.output.record.cause);
   second_.support = {};
+  second_.probe = {};
   note_support(second_, site, leads());
+  note_probe(second_, site, leads());
   second_.fault = control::GateFault::none;
   for (std::size_t joint = 0; joint < read_.size(); ++joint) {
     second_.most_torque = std::max(second_.most_torque, std::fabs(done.output.site[joint].motor_force_N));
