@@ -33,6 +33,33 @@ constexpr std::array<std::pair<const char*, std::int64_t>, 6> dynamixel_models{{
                                                                                 {"xm430-w210", 1030},
                                                                                 {"xm430-w350", 1020}}};
 
+/// Of the servos from 1 to `servos`.
+Result<emulation::WrittenFault> read_servo_fault(const std::string& word, std::int64_t servos) {
+  auto fault = emulation::parse_servo_fault(word);
+  if (fault && fault->id > servos) {
+    return Error{ErrorCode::out_of_bounds, {}, "'" + word + "': the ids go from 1 to " + std::to_string(servos), {}};
+  }
+  return fault;
+}
+
+template <class Peer>
+LiveMotors live_servos(Peer& peer) {
+  return {.inject = [&peer](const std::string& word, std::int64_t now_ns) -> Check {
+            const auto fault = read_servo_fault(word, static_cast<std::int64_t>(peer.servos()));
+            if (!fault) return fault.error();
+            return peer.inject(*fault, now_ns);
+          },
+          .powered =
+              [&peer](std::int64_t now_ns) {
+                peer.advance(now_ns);
+                std::uint32_t powered = 0;
+                for (std::size_t i = 0; i < peer.servos(); ++i) {
+                  if (peer.has_power(i)) powered |= 1U << i;
+                }
+                return powered;
+              }};
+}
+
 /// Servos 1 and on behind a line of that pace, with the faults that were asked for.
 template <class Peer, class Model>
 Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Params params, const Model& set_model) {
@@ -45,11 +72,7 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
   params.bits_per_s = options.bits_per_s;
   params.seed = options.seed;
   for (const std::string& word : options.faults) {
-    auto fault = emulation::parse_servo_fault(word);
-    if (fault && fault->id > options.servos) {
-      fault = Error{
-          ErrorCode::out_of_bounds, {}, "'" + word + "': the ids go from 1 to " + std::to_string(options.servos), {}};
-    }
+    auto fault = read_servo_fault(word, options.servos);
     if (!fault) {
       Error error = fault.error();
       error.place = "--fault";
@@ -69,7 +92,9 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
   }
   auto peer = Peer::make(params);
   if (!peer) return peer.error();
-  EmulatedPeer made{.motors = std::make_unique<Peer>(*std::move(peer)), .line = nullptr};
+  auto motors = std::make_unique<Peer>(*std::move(peer));
+  const LiveMotors live = live_servos(*motors);
+  EmulatedPeer made{.motors = std::move(motors), .line = nullptr, .only_at_bits_per_s = 0, .live = live};
   if (options.deaf_otherwise) made.only_at_bits_per_s = options.bits_per_s;
   made.line =
       std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(options.bits_per_s), wire::Paced::Line::half_duplex);
