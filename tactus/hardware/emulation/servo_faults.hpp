@@ -49,7 +49,7 @@ struct WrittenFault {
   std::int64_t id = -1;      ///< of the servo; negative: of all
   std::int64_t from_ns = 0;  ///< after the first byte that the peer receives
   std::uint8_t error = 0;    ///< that `ServoFault::error` reports
-  LineFaults line;           ///< where it is one of the line
+  LineFaults line{};         ///< where it is one of the line
 };
 /// Reads `KIND[:ID][@SECONDS]`: an enumerator of `ServoFault`, of which servo and from when, as `hot:2@5`, `error` with
 /// its byte, as `error=0x24:2@5`; or
