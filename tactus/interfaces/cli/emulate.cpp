@@ -5,6 +5,7 @@
 #include <tactus/interfaces/cli/interruption.hpp>
 #include <tactus/interfaces/cli/standard_output.hpp>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <iostream>
@@ -41,21 +42,29 @@ class OnlyAtItsRate final : public wire::WireEnd {
   std::int64_t bits_per_s_;
 };
 
-/// Lets the console look whenever the line has been spoken to or nothing is left to say.
+/// Lets the console look whenever the line has been spoken to or nothing is left to say. It wakes once a millisecond at
+/// most and not for each byte, so that many can run at once: the motors live at their exact times all the same, but
+/// their answers may come so much later.
 class Live final : public wire::WireEnd {
  public:
   Live(wire::WireEnd& end, LiveConsole& console) : end_(&end), console_(&console) {}
   void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override { end_->hear(bytes, now_ns); }
   std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override {
     const auto said = end_->say(now_ns);
-    if (said.empty()) console_->look(now_ns);
+    if (!said.empty()) return said;
+    console_->look(now_ns);
+    spoke_ns_ = now_ns;
     return said;
   }
-  [[nodiscard]] std::int64_t wakes_ns() const noexcept override { return end_->wakes_ns(); }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override {
+    constexpr std::int64_t shortest_ns = 1'000'000;
+    return std::max(end_->wakes_ns(), spoke_ns_ + shortest_ns);
+  }
 
  private:
   wire::WireEnd* end_;
   LiveConsole* console_;
+  std::int64_t spoke_ns_ = 0;
 };
 
 Check emulate(const std::function<Result<EmulatedPeer>()>& make, bool live) {
