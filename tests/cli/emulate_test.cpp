@@ -94,7 +94,7 @@ TEST_F(Emulate, LiveMotorsTakeFaultsFromTheInputAndSayWhenTheirPowerChanges) {
     mkfifo said faults
     $TACTUS emulate feetech --model hls3625 --live >said 2>emulate.log <faults & peer=$!
     trap "kill -KILL $peer 2>/dev/null" EXIT
-    exec 4>faults 5<said
+    exec 5<said 4>faults
     read -r path <&5 || exit 3
     exec 3<>"$path"
     # Torque enable of servo 2: 1, then 0, which it ignores from the fault on until that is another one.
