@@ -13,7 +13,7 @@ namespace tactus::emulation::inverse3 {
 /// What the states of an emulated device may report in place of what is so, and what it may do wrong.
 enum class FaultKind : std::int64_t {
   mode,          ///< another mode, any word; the empty one leaves the mode out
-  calibrated,    ///< 0 or 1; the device goes on giving force
+  calibrated,    ///< 0 or 1; the device continues to give force
   power_supply,  ///< the same
   ready,         ///< the same
   keeps_force    ///< a message without a command does not end a force
