@@ -277,9 +277,8 @@ TEST_F(ConsoleLost, EverySignalThatCanBeCaughtEndsASiteWithItsReport) {
   }
   for (auto& [name, site] : sites) {
     ASSERT_TRUE(eventually([&, this_name = name] { return shows(this_name + ".log", " align "); })) << name;
-    // What a site ignores.
-    site.signal(SIGPIPE);
-    site.signal(SIGXFSZ);
+    // What a site ignores. The last two stop other programs in the background of a terminal.
+    for (const int number : {SIGPIPE, SIGXFSZ, SIGTTIN, SIGTTOU}) site.signal(number);
     site.signal(signals.at(name));
     // Those that come by themselves come more than once; that is not a person who insists.
     if (name == "SIGXCPU") site.signal(SIGXCPU);

@@ -89,6 +89,35 @@ print(urllib.request.urlopen('http' + sys.argv[1][2:] + '/version', timeout=20).
   EXPECT_EQ(content("emulate.log"), "");
 }
 
+TEST_F(Emulate, LiveMotorsTakeFaultsFromTheInputAndSayWhenTheirPowerChanges) {
+  shell(R"(
+    mkfifo said faults
+    $TACTUS emulate feetech --model hls3625 --live >said 2>emulate.log <faults & peer=$!
+    trap "kill -KILL $peer 2>/dev/null" EXIT
+    exec 5<said 4>faults
+    read -r path <&5 || exit 3
+    exec 3<>"$path"
+    # Torque enable of servo 2: 1, then 0, which it ignores from the fault on until that is another one.
+    printf '\377\377\002\004\003\050\001\315' >&3
+    read -r on <&5 || exit 4
+    echo ignores-disable:2 >&4; echo hicups >&4
+    heard() { for try in $(seq 200); do grep -q $1 emulate.log && return; sleep 0.05; done; }
+    heard hicups
+    printf '\377\377\002\004\003\050\000\316' >&3
+    timeout 20 head -c 12 <&3 >/dev/null
+    echo error=0x24:2 >&4; echo sneezes >&4; heard sneezes
+    printf '\377\377\002\004\003\050\000\316' >&3
+    read -r off <&5 || exit 6
+    echo "$on" >changes; echo "$off" >>changes
+    kill -TERM $peer
+    wait $peer || exit 5
+  )");
+  const std::string changes = content("changes");
+  EXPECT_EQ(changes.find("power 2 on "), 0U) << changes;
+  EXPECT_NE(changes.find("\npower 2 off "), std::string::npos) << changes;
+  EXPECT_NE(content("emulate.log").find("'hicups': there is no such fault"), std::string::npos);
+}
+
 TEST_F(Emulate, AFaultOfServosIsReadOrRefusedWithWhatThereIs) {
   for (const char* kind : {"dynamixel", "feetech"}) {
     const Outcome unknown = tactus({"emulate", kind, "--fault", "hicups:1"});

@@ -172,6 +172,49 @@ TEST_F(RigRun, AMotorThatIgnoresDisableIsToldWhenTheRunIsInterrupted) {
   EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 
+TEST_F(RigRun, ServosOfBothMakesThatIgnoreItAreToldWhenTheRunIsInterrupted) {
+  std::string rig = side("leader", "@1", "dynamixel", "xl330-m288", 2, "") +
+                    side("follower", "@2", "feetech", "hls3625", 2, "torque_Nm_per_A = 0.8\n");
+  const std::string limit = "torque_limit_Nm = 1.5";
+  for (auto at = rig.find(limit); at != std::string::npos; at = rig.find(limit, at)) {
+    rig.replace(at, limit.size(), "torque_limit_Nm = 0.3");
+  }
+  const std::string said = shell_until({"follower active"}, "dynamixel --fault ignores-disable:2",
+                                       "feetech --model hls3625 --fault ignores-disable:2", rig, R"sh(
+      $RUN --arm --set control.supervision.probe.force_N=0.2 --set control.supervision.probe.duration_s=0.35 <&9 >run.out 2>&1 & run=$!
+      for try in $(seq 100); do grep -q 'follower active' run.out && break; sleep 0.1; done
+      kill -INT $run
+      wait $run; echo status $?
+      cat run.out)sh");
+  EXPECT_NE(said.find("follower active"), std::string::npos) << said;
+  for (const char* told : {"tactus: arm.leader.joint_2: motor 2 at ", " (dynamixel) ",
+                           "tactus: arm.follower.joint_2: motor 2 at ", " (feetech) ", "torque enable 1)"}) {
+    EXPECT_NE(said.find(told), std::string::npos) << told << said;
+  }
+  EXPECT_EQ(said.find(".joint_1: motor 1 at "), std::string::npos) << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
+}
+
+TEST_F(RigRun, AHandleWhoseForceGoesOnWithoutCommandsIsToldWhenTheRunIsInterrupted) {
+  const std::filesystem::path rigs = TACTUS_EXAMPLE_FOLDER "/rigs";
+  setenv("RIGS", rigs.c_str(), 1);
+  const std::string said = shell_until({"follower active"}, "inverse3 --port 0 --keeps-force", "damiao --motors 3", "",
+                                       R"sh(
+      sed "s|127.0.0.1:10001|${leader#ws://}|; s|/dev/serial/by-id/FOLLOWER|$follower|
+           s|^bus = \"damiao\"|&\nreply_timeout_s = 0.05\nwatchdog_s = 1.0|" $RIGS/inverse3.toml >rig.toml
+      $TACTUS run $RIGS/axes.toml --realtime --device rig.toml --arm <&9 >run.out 2>&1 & run=$!
+      for try in $(seq 100); do grep -q 'follower active' run.out && break; sleep 0.1; done
+      kill -INT $run
+      wait $run; echo status $?
+      cat run.out)sh");
+  EXPECT_NE(said.find("follower active"), std::string::npos) << said;
+  for (const char* axis : {"x: motor 1 at ", "y: motor 2 at ", "z: motor 3 at "}) {
+    EXPECT_NE(said.find(std::string("tactus: desk.leader.") + axis), std::string::npos) << axis << said;
+  }
+  EXPECT_EQ(said.find("tactus: desk.follower"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
+}
+
 TEST_F(RigRun, AMotorWithAFaultEndsTheForceOfBothAndIsSaid) {
   const std::string said =
       shell_until({"follower active"}, "damiao", "damiao --fault hot-drive:2@4", pair("damiao", "DM4310", 2, ""),

@@ -49,12 +49,32 @@ struct WrittenFault {
   std::int64_t id = -1;      ///< of the servo; negative: of all
   std::int64_t from_ns = 0;  ///< after the first byte that the peer receives
   std::uint8_t error = 0;    ///< that `ServoFault::error` reports
-  LineFaults line;           ///< where it is one of the line
+  LineFaults line{};         ///< where it is one of the line
 };
 /// Reads `KIND[:ID][@SECONDS]`: an enumerator of `ServoFault`, of which servo and from when, as `hot:2@5`, `error` with
 /// its byte, as `error=0x24:2@5`; or
 /// `corrupt`, `garbage` and `split` for a hundredth of all answers, or `echo`. Errors: `syntax`, with the text and what
 /// there is.
 Result<WrittenFault> parse_servo_fault(std::string_view text);
+
+/// Gives servos a fault while they run, in place of the one that they have: that of `fault.id`, or all. Its time counts
+/// from now, or from the first byte that the peer receives (`began`). `id_of(servo)`: the id of one. Errors:
+/// `inconsistent` for a fault of the line, and for wrong-model and low-limit, which a servo has from the start or
+/// never.
+template <class Servos, class IdOf>
+Check inject_into(Servos& servos, const IdOf& id_of, const WrittenFault& fault, bool began, std::int64_t now_ns) {
+  if (fault.servo == ServoFault::none || fault.servo == ServoFault::wrong_model ||
+      fault.servo == ServoFault::low_limit) {
+    return Error{ErrorCode::inconsistent, {}, "it cannot begin while the servos run: start them with it", {}};
+  }
+  for (auto& servo : servos) {
+    if (fault.id >= 0 && fault.id != static_cast<std::int64_t>(id_of(servo))) continue;
+    servo.fault = fault.servo;
+    servo.fault_from_ns = fault.from_ns + (began ? now_ns : 0);
+    servo.error = fault.error;
+    servo.broke = false;
+  }
+  return std::nullopt;
+}
 
 }  // namespace tactus::emulation

@@ -5,6 +5,7 @@
 #include <tactus/interfaces/cli/interruption.hpp>
 #include <tactus/interfaces/cli/standard_output.hpp>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <iostream>
@@ -41,7 +42,32 @@ class OnlyAtItsRate final : public wire::WireEnd {
   std::int64_t bits_per_s_;
 };
 
-Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
+/// Lets the console look whenever the line has been spoken to or nothing is left to say. It wakes once a millisecond at
+/// most and not for each byte, so that many can run at once: the motors live at their exact times all the same, but
+/// their answers may come so much later.
+class Live final : public wire::WireEnd {
+ public:
+  Live(wire::WireEnd& end, LiveConsole& console) : end_(&end), console_(&console) {}
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override { end_->hear(bytes, now_ns); }
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override {
+    const auto said = end_->say(now_ns);
+    if (!said.empty()) return said;
+    console_->look(now_ns);
+    spoke_ns_ = now_ns;
+    return said;
+  }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override {
+    constexpr std::int64_t shortest_ns = 1'000'000;
+    return std::max(end_->wakes_ns(), spoke_ns_ + shortest_ns);
+  }
+
+ private:
+  wire::WireEnd* end_;
+  LiveConsole* console_;
+  std::int64_t spoke_ns_ = 0;
+};
+
+Check emulate(const std::function<Result<EmulatedPeer>()>& make, bool live) {
   const auto peer = make();
   if (!peer) return peer.error();
   runtime::EndRequest end;
@@ -53,18 +79,46 @@ Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
   if (Check error = flush_standard_output()) return error;
   OnlyAtItsRate deaf(*peer->line, *port, peer->only_at_bits_per_s);
   wire::WireEnd& line = peer->only_at_bits_per_s > 0 ? static_cast<wire::WireEnd&>(deaf) : *peer->line;
-  return wire::talk(line, *port, [&end] { return end.asked(); });
+  LiveConsole console(peer->live);
+  Live steered(line, console);
+  return wire::talk(live ? static_cast<wire::WireEnd&>(steered) : line, *port, [&end] { return end.asked(); });
 }
 
-Check serve_inverse3(const std::function<Result<emulation::inverse3::Inverse3Server>()>& start) {
+/// All devices, as one motor each.
+LiveMotors live_devices(emulation::inverse3::Inverse3Server& server) {
+  using emulation::inverse3::Inverse3Service;
+  return {.inject = [&server](const std::string& word, std::int64_t) -> Check {
+            auto fault = emulation::inverse3::parse_fault(word);
+            if (!fault) return fault.error();
+            server.with_service(
+                [&fault](Inverse3Service& service, std::int64_t now_ns) { service.inject(*std::move(fault), now_ns); });
+            return std::nullopt;
+          },
+          .powered =
+              [&server](std::int64_t) {
+                std::uint32_t powered = 0;
+                server.with_service([&powered](Inverse3Service& service, std::int64_t now_ns) {
+                  for (std::size_t i = 0; i < service.devices(); ++i) {
+                    if (service.gives_force(i, now_ns)) powered |= 1U << i;
+                  }
+                });
+                return powered;
+              }};
+}
+
+Check serve_inverse3(const std::function<Result<emulation::inverse3::Inverse3Server>()>& start, bool live) {
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  const auto server = start();
+  auto server = start();
   if (!server) return server.error();
   std::cout << server.value().url() << "\n";
   if (Check error = flush_standard_output()) return error;
-  while (!end.asked()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  LiveConsole console(live_devices(*server));
+  while (!end.asked()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(live ? 5 : 20));
+    if (live) console.look(wire::monotonic_ns());
+  }
   return std::nullopt;
 }
 
@@ -83,12 +137,21 @@ void add_emulate(CLI::App& app, int& status) {
   };
   for (const EmulatedKind& kind : emulated_kinds) {
     CLI::App* chosen = verb->add_subcommand(kind.name, kind.summary);
-    run(*chosen, [make = kind.add_options(*chosen)] { return emulate(make); });
+    const auto live = std::make_shared<bool>(false);
+    const auto make = kind.add_options(*chosen);
+    chosen->add_flag("--live", *live, live_help);
+    run(*chosen, [make, live] { return emulate(make, *live); });
   }
   CLI::App* chosen = verb->add_subcommand("inverse3",
                                           "Haply's Inverse Service with an Inverse3, at a port whose address "
                                           "it prints");
-  run(*chosen, [start = add_inverse3_options(*chosen)] { return serve_inverse3(start); });
+  const auto live = std::make_shared<bool>(false);
+  const auto start = add_inverse3_options(*chosen);
+  chosen->add_flag("--live", *live,
+                   std::string(live_help) +
+                       ". Faults: mode=WORD (empty: none), calibrated=0, "
+                       "power_supply=0, ready=0 (as reported), keeps-force; each as KIND[=VALUE][@SECONDS]");
+  run(*chosen, [start, live] { return serve_inverse3(start, *live); });
 }
 
 }  // namespace tactus::cli

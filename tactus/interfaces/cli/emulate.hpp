@@ -3,6 +3,7 @@
 #include <tactus/hardware/emulation/inverse3/inverse3_server.hpp>
 #include <tactus/hardware/emulation/servo_faults.hpp>
 #include <tactus/hardware/wire/wire_end.hpp>
+#include <tactus/interfaces/cli/emulate_live.hpp>
 #include <tactus/kernel/core/parameters.hpp>
 #include <tactus/kernel/core/result.hpp>
 
@@ -27,6 +28,7 @@ struct EmulatedPeer {
   std::unique_ptr<wire::WireEnd> motors;
   std::unique_ptr<wire::WireEnd> line;
   std::int64_t only_at_bits_per_s = 0;  ///< it receives nothing while the line is set to another rate; 0: at each
+  LiveMotors live;                      ///< of these motors
 };
 
 /// What `tactus emulate` can be: a word of its command line, and its options.
@@ -47,6 +49,9 @@ std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_option
 inline const std::string& of_motor(const std::vector<std::string>& models, std::int64_t id) {
   return models[std::min(static_cast<std::size_t>(id), models.size()) - 1];
 }
+inline constexpr const char* live_help =
+    "Read faults from standard input while it runs, one a line, with times from then on, and print a line whenever the "
+    "power of a motor changes, as 'power 2 off 1234.567': its number and the time of CLOCK_MONOTONIC in s";
 inline constexpr const char* models_help = "Model of each, separated by commas; the last one applies to the rest";
 
 /// Models of Dynamixel servos that are emulated, with the number that each reports.

@@ -68,6 +68,32 @@ Result<std::unique_ptr<real_time::EmulatedArm>> make_arm(const DamiaoOptions& op
   return real_time::EmulatedArm::make(settings);
 }
 
+/// Of the motors from 1 to `motors`.
+Result<emulation::damiao::Fault> read_fault(const std::string& word, std::size_t motors) {
+  auto fault = emulation::damiao::parse_fault(word);
+  if (fault && fault->motor > motors) {
+    return Error{ErrorCode::out_of_bounds, {}, "'" + word + "': the motors go from 1 to " + std::to_string(motors), {}};
+  }
+  return fault;
+}
+
+LiveMotors live_motors(DamiaoPeer& peer, std::size_t motors) {
+  return {.inject = [&peer, motors](const std::string& word, std::int64_t now_ns) -> Check {
+            const auto fault = read_fault(word, motors);
+            if (!fault) return fault.error();
+            return peer.inject(*fault, now_ns);
+          },
+          .powered =
+              [&peer, motors](std::int64_t now_ns) {
+                peer.advance(now_ns);
+                std::uint32_t powered = 0;
+                for (std::size_t i = 0; i < motors; ++i) {
+                  if (peer.motor(i).enabled()) powered |= 1U << i;
+                }
+                return powered;
+              }};
+}
+
 Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
   emulation::damiao::PeerSettings settings;
   settings.adapter = value_of<AdapterType>(options.framing);
@@ -81,13 +107,7 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
         {.id = id, .feedback_id = id + 0x10, .type = value_of<MotorType>(of_motor(options.models, id))});
   }
   for (const std::string& word : options.faults) {
-    auto fault = emulation::damiao::parse_fault(word);
-    if (fault && fault->motor > settings.motors.size()) {
-      fault = Error{ErrorCode::out_of_bounds,
-                    {},
-                    "'" + word + "': the motors go from 1 to " + std::to_string(settings.motors.size()),
-                    {}};
-    }
+    auto fault = read_fault(word, settings.motors.size());
     if (!fault) {
       Error error = fault.error();
       error.place = "--fault";
@@ -97,7 +117,8 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
   }
   auto peer = DamiaoPeer::make(settings, *std::move(arm));
   if (!peer) return wrong("--motors", peer.error().message);
-  EmulatedPeer made{.motors = *std::move(peer), .line = nullptr};
+  const LiveMotors live = live_motors(**peer, settings.motors.size());
+  EmulatedPeer made{.motors = *std::move(peer), .line = nullptr, .only_at_bits_per_s = 0, .live = live};
   made.line = std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(bits_per_s), wire::Paced::Line::full_duplex);
   return made;
 }

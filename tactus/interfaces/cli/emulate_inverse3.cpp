@@ -15,6 +15,7 @@ struct Inverse3Options {
   std::string dialect = name_of(Dialect::v3_5);
   bool uncalibrated = false;
   double late_s = 0.0;
+  std::string mode;  ///< empty: its own
   std::uint16_t port = 10001;
 };
 
@@ -34,13 +35,14 @@ std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_option
   verb.add_option("--closes-after", options->service.closes_after,
                   "Close the connection in place of this reply; 0: never");
   verb.add_flag("--keeps-force", options->service.keeps_force, "Keep the force after a message without a command");
-  verb.add_option("--mode", options->service.mode, "Mode that each state reports, in place of the actual one")
+  verb.add_option("--mode", options->mode, "Mode that each state reports, in place of the actual one")
       ->type_name("WORD");
   verb.add_option("--seed", options->service.seed, "Seed of the cut replies");
   return [options] {
     Inverse3Service::Params params = options->service;
     params.dialect = value_of<Dialect>(options->dialect);
     params.calibrated = !options->uncalibrated;
+    if (!options->mode.empty()) params.mode = options->mode;
     params.late_ns = static_cast<std::int64_t>(options->late_s * 1e9);
     return emulation::inverse3::Inverse3Server::start(params, options->port);
   };

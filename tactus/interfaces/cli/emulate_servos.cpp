@@ -25,6 +25,33 @@ struct ServoOptions {
   std::int64_t seed = 1;
 };
 
+/// Of the servos from 1 to `servos`.
+Result<emulation::WrittenFault> read_servo_fault(const std::string& word, std::int64_t servos) {
+  auto fault = emulation::parse_servo_fault(word);
+  if (fault && fault->id > servos) {
+    return Error{ErrorCode::out_of_bounds, {}, "'" + word + "': the ids go from 1 to " + std::to_string(servos), {}};
+  }
+  return fault;
+}
+
+template <class Peer>
+LiveMotors live_servos(Peer& peer) {
+  return {.inject = [&peer](const std::string& word, std::int64_t now_ns) -> Check {
+            const auto fault = read_servo_fault(word, static_cast<std::int64_t>(peer.servos()));
+            if (!fault) return fault.error();
+            return peer.inject(*fault, now_ns);
+          },
+          .powered =
+              [&peer](std::int64_t now_ns) {
+                peer.advance(now_ns);
+                std::uint32_t powered = 0;
+                for (std::size_t i = 0; i < peer.servos(); ++i) {
+                  if (peer.has_power(i)) powered |= 1U << i;
+                }
+                return powered;
+              }};
+}
+
 /// Servos 1 and on behind a line of that pace, with the faults that were asked for.
 template <class Peer, class Model>
 Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Params params, const Model& set_model) {
@@ -39,7 +66,9 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
   if (Check wrong = add_servo_faults(params, options.faults)) return *std::move(wrong);
   auto peer = Peer::make(params);
   if (!peer) return peer.error();
-  EmulatedPeer made{.motors = std::make_unique<Peer>(*std::move(peer)), .line = nullptr};
+  auto motors = std::make_unique<Peer>(*std::move(peer));
+  const LiveMotors live = live_servos(*motors);
+  EmulatedPeer made{.motors = std::move(motors), .line = nullptr, .only_at_bits_per_s = 0, .live = live};
   if (options.deaf_otherwise) made.only_at_bits_per_s = options.bits_per_s;
   made.line =
       std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(options.bits_per_s), wire::Paced::Line::half_duplex);

@@ -73,7 +73,10 @@ Interruption::Interruption(runtime::EndRequest& end, Interrupted what) : end_(&e
     if (is_free(signal)) sigaddset(&signals_, signal);
   }
   blocked_ = signals_;
-  if (what == Interrupted::site) sigaddset(&blocked_, SIGUSR1);
+  if (what == Interrupted::site) {
+    // A terminal stops who reads or writes in its background; blocked, the read fails, which is the end of the input.
+    for (const int signal : {SIGUSR1, SIGTTIN, SIGTTOU}) sigaddset(&blocked_, signal);
+  }
   pthread_sigmask(SIG_BLOCK, &blocked_, &before_);
 }
 

@@ -38,11 +38,11 @@ std::unique_ptr<DamiaoPeer> peer_with(AdapterType adapter, std::vector<Fault> fa
   return *std::move(peer);
 }
 
-/// What comes back within 20 ms from what is said at the start.
-std::vector<ScriptedEnd::Heard> answers(DamiaoPeer& peer, const std::vector<Bytes>& said) {
+/// What comes back within 20 ms from what is said at this time.
+std::vector<ScriptedEnd::Heard> answers(DamiaoPeer& peer, const std::vector<Bytes>& said, std::int64_t at_ns = 0) {
   ScriptedEnd driver;
-  for (const Bytes& bytes : said) driver.script.emplace_back(0, bytes);
-  wire::join(driver, peer, 0, 20 * ms);
+  for (const Bytes& bytes : said) driver.script.emplace_back(at_ns, bytes);
+  wire::join(driver, peer, at_ns, at_ns + 20 * ms);
   return driver.heard;
 }
 
@@ -165,6 +165,29 @@ TEST(DamiaoPeer, AnotherVelocityScaleIsInTheRegisterAndInTheFrames) {
   ASSERT_EQ(heard.size(), 2U);
   EXPECT_EQ(heard[0].bytes, structure(0x11, {1, 0, 0x33, 22, 0x00, 0x00, 0x34, 0x42}));  // 45.0F
   EXPECT_EQ(heard[1].bytes, structure(0x12, {2, 0, 0x33, 22, 0x00, 0x00, 0xf0, 0x41}));  // 30.0F
+}
+
+TEST(DamiaoPeer, AFaultThatIsInjectedCountsFromThenOn) {
+  auto peer = peer_with(AdapterType::socketcan, {});
+  const auto status = [&peer](std::int64_t now_ns) {
+    const auto heard = answers(*peer, {refresh(2)}, now_ns);
+    if (heard.empty()) return -1;
+    can_frame frame{};
+    std::memcpy(&frame, heard[0].bytes.data(), sizeof(frame));
+    return frame.data[0] >> 4;
+  };
+  peer->advance(3'000 * ms);
+  EXPECT_EQ(status(3'000 * ms), 0);
+  ASSERT_FALSE(peer->inject(
+      {.kind = FaultKind::status, .motor = 2, .from_ns = 20 * ms, .until_ns = 40 * ms, .status = 7}, 3'020 * ms));
+  EXPECT_EQ(status(3'020 * ms), 0);
+  EXPECT_EQ(status(3'040 * ms), 7);
+  EXPECT_EQ(status(3'060 * ms), 0);
+  for (const FaultKind kind : {FaultKind::wrong_scale, FaultKind::wrap, FaultKind::heartbeat}) {
+    const Check refused = peer->inject({.kind = kind}, 3'080 * ms);
+    ASSERT_TRUE(refused) << name_of(kind);
+    EXPECT_NE(refused->message.find("start them with it"), std::string::npos);
+  }
 }
 
 TEST(DamiaoPeer, AFaultIsReadFromAWord) {

@@ -232,6 +232,31 @@ TEST(DynamixelPeer, AFaultBeginsByTheTimeOfTheFirstByte) {
   EXPECT_EQ(bench.read(132, 4), -1);
 }
 
+TEST(DynamixelPeer, AFaultThatIsInjectedCountsFromThenOn) {
+  Bench bench(std::vector{DynamixelPeer::Servo{.id = 1}});
+  bench.now_ns = 5'000'000 * ms;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  ASSERT_FALSE(bench.peer.inject({.servo = ServoFault::silence, .id = 1, .from_ns = 10 * ms}, bench.now_ns));
+  bench.now_ns += 9 * ms;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  bench.now_ns += 2 * ms;
+  EXPECT_EQ(bench.read(132, 4), -1);
+  EXPECT_TRUE(bench.peer.inject({.servo = ServoFault::none}, bench.now_ns)) << "of the line";
+  EXPECT_TRUE(bench.peer.inject({.servo = ServoFault::low_limit}, bench.now_ns)) << "from the start only";
+}
+
+TEST(DynamixelPeer, ItHasPowerUntilItsWatchdogActs) {
+  Bench bench(std::vector{DynamixelPeer::Servo{.id = 1}});
+  EXPECT_FALSE(bench.peer.has_power(0));
+  EXPECT_EQ(bench.write(64, {1}), 0);
+  EXPECT_TRUE(bench.peer.has_power(0));
+  EXPECT_EQ(bench.write(98, {5}), 0);  // 100 ms
+  bench.peer.advance(bench.now_ns + 90 * ms);
+  EXPECT_TRUE(bench.peer.has_power(0));
+  bench.peer.advance(bench.now_ns + 110 * ms);
+  EXPECT_FALSE(bench.peer.has_power(0));
+}
+
 TEST(DynamixelPeer, FaultsOfTheLineAreThoseOfTheSeed) {
   const auto run = [](std::int64_t seed) {
     auto peer = DynamixelPeer::make({.line = {.corrupt = 0.3, .garbage = 0.3, .split = 0.3, .echo = 1}, .seed = seed});

@@ -37,6 +37,22 @@ struct Bench {
   std::int64_t now_ns = 0;
 };
 
+TEST(FeetechPeer, AFaultThatIsInjectedCountsFromThenOn) {
+  Bench bench({{.id = 1}, {.id = 2}});
+  bench.write(40, {1});
+  EXPECT_TRUE(bench.peer.has_power(0));
+  EXPECT_FALSE(bench.peer.has_power(1));
+  bench.now_ns = 100 * ms;
+  ASSERT_FALSE(bench.peer.inject({.servo = ServoFault::ignores_disable, .id = 1, .from_ns = 50 * ms}, bench.now_ns));
+  bench.now_ns = 160 * ms;
+  bench.write(40, {0});
+  EXPECT_TRUE(bench.peer.has_power(0));
+  ASSERT_FALSE(bench.peer.inject({.servo = ServoFault::silence}, bench.now_ns));
+  bench.write(40, {0});
+  EXPECT_FALSE(bench.peer.has_power(0)) << "in place of the fault that it had";
+  EXPECT_TRUE(bench.peer.inject({.servo = ServoFault::wrong_model}, bench.now_ns)) << "from the start only";
+}
+
 TEST(FeetechPeer, AnswersTheVectorsOfThePageWithTheirBytes) {
   Bench bench({{.id = 1, .make = Make::sts3215}, {.id = 2, .make = Make::sts3215}});
   EXPECT_EQ(bench.ask({0xFF, 0xFF, 0x01, 0x02, 0x01, 0xFB}), (Bytes{0xFF, 0xFF, 0x01, 0x02, 0x00, 0xFC}));

@@ -48,6 +48,42 @@ TEST(Inverse3Service, TheSnapshotHoldsWhatThePageLists) {
   EXPECT_TRUE(later["inverse3"][0].contains("state") && later["inverse3"][0].contains("status"));
 }
 
+TEST(Inverse3Service, FaultsThatAreInjectedChangeWhatItReportsAndNotWhatItDoes) {
+  auto service = service_of({});
+  service.answer(push_new, 0);
+  for (const char* word : {"mode=impedance@0.01", "calibrated=0@0.01", "power_supply=0@0.01", "ready=0@0.01"}) {
+    service.inject(parse_fault(word).value(), 0);
+  }
+  json told = json::parse(service.answer(push_new, 5 * ms).text)["inverse3"][0];
+  EXPECT_EQ(told["state"]["control_mode"], "force");
+  EXPECT_EQ(told["status"]["calibrated"], true);
+  told = json::parse(service.answer(push_new, 12 * ms).text)["inverse3"][0];
+  EXPECT_EQ(told["state"]["control_mode"], "impedance");
+  for (const char* flag : {"calibrated", "power_supply", "ready"}) EXPECT_EQ(told["status"][flag], false) << flag;
+  EXPECT_TRUE(service.gives_force(0, 12 * ms));
+  EXPECT_FALSE(service.gives_force(0, 40 * ms)) << "for want of messages";
+  service.inject(parse_fault("mode=").value(), 40 * ms);
+  told = json::parse(service.answer(probe, 41 * ms).text)["inverse3"][0];
+  EXPECT_FALSE(told["state"].contains("control_mode"));
+  service.inject(parse_fault("keeps-force").value(), 41 * ms);
+  service.answer(push_new, 42 * ms);
+  service.answer(probe, 43 * ms);
+  EXPECT_TRUE(service.gives_force(0, 43 * ms));
+}
+
+TEST(Inverse3Service, AFaultIsReadFromAWord) {
+  const auto mode = parse_fault("mode=a=b@0.5");
+  ASSERT_TRUE(mode);
+  EXPECT_EQ(mode->mode, "a=b");
+  EXPECT_EQ(mode->from_ns, 500 * ms);
+  for (const char* wrong :
+       {"", "mode", "ready", "ready=", "ready=2", "keeps-force=1", "ready=0@x", "ready=0@-1", "readiness=0"}) {
+    const auto refused = parse_fault(wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_NE(refused.error().message.find("KIND[=VALUE][@SECONDS]"), std::string::npos) << wrong;
+  }
+}
+
 TEST(Inverse3Service, AForceMovesTheMassAsNewtonSays) {
   auto service = service_of({});
   for (int tick = 0; tick < 100; ++tick) service.answer(push_new, tick * ms);

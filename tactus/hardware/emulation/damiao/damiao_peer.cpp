@@ -108,6 +108,20 @@ bool DamiaoPeer::suffers(FaultKind kind, std::uint32_t motor, std::int64_t at_ns
   });
 }
 
+Check DamiaoPeer::inject(Fault fault, std::int64_t now_ns) {
+  if (fault.kind == FaultKind::wrong_scale || fault.kind == FaultKind::wrap || fault.kind == FaultKind::heartbeat) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = std::string(name_of(fault.kind)) + " cannot begin while the motors run: start them with it",
+                 .place = {}};
+  }
+  live_until(now_ns);
+  fault.from_ns += now_ns - start_ns_;
+  if (fault.until_ns != wire::never_ns) fault.until_ns += now_ns - start_ns_;
+  settings_.faults.push_back(fault);
+  return std::nullopt;
+}
+
 void DamiaoPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
   live_until(now_ns);
   adapter_.hear(bytes, [this, now_ns](const Frame& frame) {

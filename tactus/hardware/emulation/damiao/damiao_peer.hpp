@@ -42,6 +42,11 @@ class DamiaoPeer final : public wire::WireEnd {
   std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override;
   [[nodiscard]] std::int64_t wakes_ns() const noexcept override;
 
+  /// Injects another fault. Its times count from now. Errors: `inconsistent` for a kind that motors or adapter have
+  /// from the start or never: wrong-scale, wrap, heartbeat. Not real-time safe.
+  Check inject(Fault fault, std::int64_t now_ns);
+  /// Lets time pass where nothing is received, for who looks at the truth.
+  void advance(std::int64_t now_ns) noexcept { live_until(now_ns); }
   /// As it was when the peer was last called.
   [[nodiscard]] const Motor& motor(std::size_t index) const noexcept { return motors_[index]; }
 

@@ -162,6 +162,15 @@ bool DynamixelPeer::answers(const State& servo, std::int64_t now_ns) const noexc
   return servo.fault != ServoFault::silence || now_ns < servo.fault_from_ns;
 }
 
+bool DynamixelPeer::has_power(std::size_t servo) const noexcept {
+  return servos_[servo].table[64] != 0 && servos_[servo].table[98] != 0xff;
+}
+
+Check DynamixelPeer::inject(const WrittenFault& fault, std::int64_t now_ns) {
+  return inject_into(
+      servos_, [](const State& servo) { return servo.id; }, fault, began_, now_ns);
+}
+
 void DynamixelPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
   if (!began_) {
     began_ = true;

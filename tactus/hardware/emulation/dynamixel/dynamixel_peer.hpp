@@ -56,6 +56,11 @@ class DynamixelPeer final : public wire::WireEnd {
   /// it.
   [[nodiscard]] std::int64_t largest_current(std::size_t servo) const noexcept { return servos_[servo].largest; }
   [[nodiscard]] std::int64_t lost_goals() const noexcept { return lost_goals_; }
+  /// Whether it gives torque if it is commanded to: register 64, unless its watchdog has acted.
+  [[nodiscard]] bool has_power(std::size_t servo) const noexcept;
+  [[nodiscard]] std::size_t servos() const noexcept { return servos_.size(); }
+  /// Gives servos a fault from now on, see `inject_into`.
+  Check inject(const WrittenFault& fault, std::int64_t now_ns);
   /// Lets time pass where nothing is received, for who looks at the truth.
   void advance(std::int64_t now_ns) noexcept;
 

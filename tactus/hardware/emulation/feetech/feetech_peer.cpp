@@ -143,6 +143,13 @@ FeetechPeer::State* FeetechPeer::find(std::uint8_t id) noexcept {
   return found == servos_.end() ? nullptr : &*found;
 }
 
+bool FeetechPeer::has_power(std::size_t servo) const noexcept { return servos_[servo].table[power] != 0; }
+
+Check FeetechPeer::inject(const WrittenFault& fault, std::int64_t now_ns) {
+  return inject_into(
+      servos_, [](const State& servo) { return servo.table[own_id]; }, fault, began_, now_ns);
+}
+
 void FeetechPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
   if (!began_) {
     began_ = true;

@@ -55,6 +55,11 @@ class FeetechPeer final : public wire::WireEnd {
   ServoJoint& joint(std::size_t servo) noexcept { return servos_[servo].joint; }
   /// The largest current that it ever gave, in its units.
   [[nodiscard]] std::int64_t largest_current(std::size_t servo) const noexcept { return servos_[servo].largest; }
+  /// Whether it gives torque if it is commanded to: register 40.
+  [[nodiscard]] bool has_power(std::size_t servo) const noexcept;
+  [[nodiscard]] std::size_t servos() const noexcept { return servos_.size(); }
+  /// Gives servos a fault from now on, see `inject_into`.
+  Check inject(const WrittenFault& fault, std::int64_t now_ns);
   /// Lets time pass where nothing is received.
   void advance(std::int64_t now_ns) noexcept;
 

@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <exception>
+#include <future>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -157,6 +159,15 @@ Inverse3Server::~Inverse3Server() {
   if (!state_) return;
   state_->io.stop();
   state_->thread.join();
+}
+
+void Inverse3Server::with_service(const std::function<void(Inverse3Service&, std::int64_t)>& call) {
+  std::promise<void> done;
+  asio::post(state_->io, [&] {
+    call(state_->service, now_ns());
+    done.set_value();
+  });
+  done.get_future().wait();
 }
 
 std::uint16_t Inverse3Server::port() const { return state_->port; }

@@ -4,6 +4,7 @@
 #include <tactus/kernel/core/result.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -21,6 +22,8 @@ class Inverse3Server {
   /// Closes every connection and ends the thread.
   ~Inverse3Server();
 
+  /// Runs this with the service and the present time on the server's thread, and returns after it. Not after the end.
+  void with_service(const std::function<void(Inverse3Service& service, std::int64_t now_ns)>& call);
   [[nodiscard]] std::uint16_t port() const;
   /// `ws://127.0.0.1:10001`
   [[nodiscard]] std::string url() const;

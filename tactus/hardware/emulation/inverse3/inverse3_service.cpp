@@ -72,6 +72,41 @@ void Inverse3Service::advance(std::int64_t now_ns) {
   }
 }
 
+void Inverse3Service::inject(Fault fault, std::int64_t now_ns) {
+  fault.from_ns += now_ns;
+  faults_.push_back(std::move(fault));
+  begin_faults(now_ns);
+}
+
+void Inverse3Service::begin_faults(std::int64_t now_ns) {
+  std::erase_if(faults_, [this, now_ns](const Fault& fault) {
+    if (fault.from_ns > now_ns) return false;
+    switch (fault.kind) {
+      case FaultKind::mode:
+        params_.mode = fault.mode;
+        break;
+      case FaultKind::calibrated:
+        calibrated_ = fault.flag;
+        break;
+      case FaultKind::power_supply:
+        power_supply_ = fault.flag;
+        break;
+      case FaultKind::ready:
+        ready_ = fault.flag;
+        break;
+      case FaultKind::keeps_force:
+        params_.keeps_force = true;
+        break;
+    }
+    return true;
+  });
+}
+
+bool Inverse3Service::gives_force(std::size_t device, std::int64_t now_ns) {
+  advance(now_ns);
+  return devices_[device].force_N != Vector{};
+}
+
 void Inverse3Service::obey(std::string_view message, std::int64_t now_ns) {
   message_ns_ = now_ns;
   for (Device& device : devices_) {
@@ -110,20 +145,16 @@ std::string Inverse3Service::told(bool with_config) const {
                {"angular_velocity", {{"a0", 0.0}, {"a1", 0.0}, {"a2", 0.0}}},
                {"current_cursor_force", of_axes(device.told_force_N)}};
     if (!params_.partial) state["body_orientation"] = {{"w", 1.0}, {"x", 0.0}, {"y", 0.0}, {"z", 0.0}};
-    const std::string mode = !params_.mode.empty() ? params_.mode : device.driven ? "force" : "idle";
-    if (new_keys) {
-      state["control_domain"] = device.driven ? "cartesian" : "idle";
-      state["control_mode"] = mode;
-    } else {
-      state["mode"] = mode;
-    }
+    const std::string mode = params_.mode.value_or(device.driven ? "force" : "idle");
+    if (new_keys) state["control_domain"] = device.driven ? "cartesian" : "idle";
+    if (!mode.empty()) state[new_keys ? "control_mode" : "mode"] = mode;
     json one{{"device_id", device.id},
              {"state", std::move(state)},
              {"status",
-              {{"calibrated", params_.calibrated},
+              {{"calibrated", calibrated_.value_or(params_.calibrated)},
                {"in_use", true},
-               {"power_supply", true},
-               {"ready", params_.calibrated},
+               {"power_supply", power_supply_.value_or(true)},
+               {"ready", ready_.value_or(params_.calibrated)},
                {"started", true}}}};
     if (with_config) {
       one["config"] = {{"device_info",
@@ -155,6 +186,7 @@ std::string Inverse3Service::snapshot(std::int64_t now_ns) {
 
 Inverse3Service::Answer Inverse3Service::answer(std::string_view message, std::int64_t now_ns) {
   advance(now_ns);
+  begin_faults(now_ns);
   obey(message, now_ns);
   ++messages_;
   Answer answer{.text = told(false), .after_ns = params_.late_ns, .closes = messages_ == params_.closes_after};

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <tactus/hardware/emulation/inverse3/faults.hpp>
 #include <tactus/kernel/core/parameters.hpp>
 #include <tactus/kernel/core/result.hpp>
 #include <tactus/kernel/signal/random.hpp>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +41,7 @@ class Inverse3Service {
     double garbage = 0.0;                  ///< share of answers that are cut off
     std::int64_t closes_after = 0;         ///< closes in place of that answer; 0: never
     bool keeps_force = false;              ///< a message without a command does not end a force
-    std::string mode = {};                 ///< that each state reports in place of its own; empty: its own
+    std::optional<std::string> mode = {};  ///< that each state reports in place of its own; "": no mode
     std::int64_t seed = 1;
   };
   /// `out_of_bounds` for a number of devices outside 1 to 4.
@@ -60,6 +62,12 @@ class Inverse3Service {
   };
   [[nodiscard]] HttpAnswer http(std::string_view method, std::string_view target, std::string_view body);
 
+  /// Injects a fault, of every device, until another of its kind. Its time counts from now.
+  void inject(Fault fault, std::int64_t now_ns);
+  [[nodiscard]] std::size_t devices() const noexcept { return devices_.size(); }
+  /// Whether a force other than zero acts at this time. Of a device below `devices()`.
+  [[nodiscard]] bool gives_force(std::size_t device, std::int64_t now_ns);
+
   // The truth.
   using Vector = std::array<double, 3>;
   [[nodiscard]] const Vector& position_m(std::size_t device) const { return devices_[device].position_m; }
@@ -76,12 +84,15 @@ class Inverse3Service {
   };
   explicit Inverse3Service(const Params& params);
   void advance(std::int64_t now_ns);
+  void begin_faults(std::int64_t now_ns);
   void obey(std::string_view message, std::int64_t now_ns);
   [[nodiscard]] std::string told(bool with_config) const;
 
   Params params_;
   signal::Random random_;
   std::vector<Device> devices_;
+  std::vector<Fault> faults_;                              ///< that have not begun
+  std::optional<bool> calibrated_, power_supply_, ready_;  ///< that states report in place of what is so
   std::int64_t now_ns_ = 0, message_ns_ = 0, messages_ = 0;
 };
 
