@@ -28,7 +28,7 @@ struct EmulatedPeer {
   std::unique_ptr<wire::WireEnd> motors;
   std::unique_ptr<wire::WireEnd> line;
   std::int64_t only_at_bits_per_s = 0;  ///< it receives nothing while the line is set to another rate; 0: at each
-  LiveMotors live;                      ///< of these motors
+  LiveMotors live = {};                 ///< of these motors
 };
 
 /// What `tactus emulate` can be: a word of its command line, and its options.
