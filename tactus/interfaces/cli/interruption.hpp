@@ -15,7 +15,7 @@ namespace tactus::cli {
 enum class Interrupted {
   job,  ///< it has no operator: SIGUSR1 ends it too, and Ctrl-Z stops it as any program
   site  ///< SIGUSR1 is the operator's, see `OperatorInput`; Ctrl-Z (SIGTSTP) ends it, because a stopped program
-        ///< does not control its devices. In the background of a terminal (SIGTTIN, SIGTTOU) it goes on
+        ///< does not control its devices. In the background of a terminal (SIGTTIN, SIGTTOU) it continues
 };
 
 /// While it lives, no signal that can be caught ends the program. The first one requests the end of what runs: SIGINT
