@@ -47,7 +47,7 @@ struct MotorJoint {
   double temperature_limit_C = 70.0;
   bool gives_force = true;               ///< false: it reports where it is and takes no command
   double velocity_step_rad_per_s = 0.0;  ///< of the velocity that its motor reports, at the motor; 0: it reports none
-  double turn_rad = 0.0;  ///< of the motor, after which its number restarts at each start; 0: it does not
+  double turn_rad = 0.0;  ///< of the motor, after which its number restarts when it gets power; 0: it does not
 
   static constexpr auto fields() {
     using namespace joint_units;

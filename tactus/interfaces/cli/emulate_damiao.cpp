@@ -140,7 +140,7 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
           "Fault to inject, as KIND[:MOTOR][@SECONDS][+SECONDS]: at which motor, from when and how long; may be "
           "repeated. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
           "hot-winding, communication-lost, overload, status=0x7 (one that it does not have), ignores-disable, "
-          "register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
+          "register-answer, twin, wrap, power-cycle, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Seed of delays and garbage");
   CLI::Option* arm = verb.add_option("--arm", options->arm,

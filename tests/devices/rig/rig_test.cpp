@@ -77,6 +77,25 @@ TEST(Rig, ANumberThatBeginsAnewAfterATurnStandsForTheTurnInTheRange) {
   EXPECT_DOUBLE_EQ(joint.first_position_rad(6.0), -2.0 + std::numbers::pi);
 }
 
+TEST(Rig, AMotorThatLosesItsTurnsWithItsPowerStandsForTheTurnInTheRange) {
+  const auto first_place_of = [](const std::string& bus, const std::string& model, const std::string& range) {
+    std::string text = "[arm.leader]\nbus = \"" + bus +
+                       "\"\nport = \"/dev/a\"\n[arm.leader.wrist]\nmotor = 1\nmodel = \"" + model +
+                       "\"\noffset_rad = -6.1\nvelocity_limit_rad_per_s = 3.0\ntorque_limit_Nm = 0.2\n"
+                       "torque_rate_limit_Nm_per_s = 50.0\n" +
+                       range;
+    const auto rig = Rig::parse(text, "rig.toml");
+    EXPECT_TRUE(rig) << describe(rig.error());
+    return rig ? rig->pairs()[0].leader->joints[0].joint.first_position_rad(0.0) : 1e9;
+  };
+  for (const auto& [bus, model] : {std::pair{"dynamixel", "XM430-W350"}, std::pair{"damiao", "DM4310"}}) {
+    EXPECT_NEAR(first_place_of(bus, model, "lower_rad = -2.9\nupper_rad = 2.9\n"), 2.0 * std::numbers::pi - 6.1, 1e-12)
+        << bus;
+    // A joint that goes farther than a turn is where its motor reports it.
+    EXPECT_EQ(first_place_of(bus, model, "lower_rad = -6.2\nupper_rad = 2.9\n"), -6.1) << bus;
+  }
+}
+
 TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
   const std::string side = damiao_side("arm.leader", "/dev/a");  // three lines
   const std::string one = joint("arm.leader.elbow", 1, "DM4310");

@@ -161,6 +161,27 @@ TEST(DamiaoMotor, AFrameForAnotherIsNotAnswered) {
   EXPECT_TRUE(motor.answer({0x201, {}}, 0));
 }
 
+TEST(DamiaoMotor, WithoutPowerItLosesItsTurnsOnce) {
+  constexpr double turn_rad = 2.0 * 3.14159265358979;
+  Motor motor = motor_with({.position_rad = turn_rad + 1.0});
+  motor.answer(order(0xfc), 0);
+  motor.lose_power(10 * ms);
+  EXPECT_TRUE(motor.is_off(309 * ms));
+  EXPECT_FALSE(motor.is_off(310 * ms));
+  EXPECT_FALSE(motor.enabled());
+  EXPECT_NEAR(motor.position_rad(), 1.0, 1e-9);
+  motor.answer(order(0xfc), 400 * ms);
+  motor.lose_power(500 * ms);
+  EXPECT_TRUE(motor.enabled()) << "it happens once";
+  // One of an arm is turned to where the arm is, and keeps what it lost.
+  Motor of_arm = motor_with({});
+  of_arm.turn_with_others();
+  of_arm.turn_to(-turn_rad + 0.5, 0.0);
+  of_arm.lose_power(10 * ms);
+  of_arm.turn_to(-turn_rad + 0.6, 0.0);
+  EXPECT_NEAR(of_arm.position_rad(), 0.6, 1e-9);
+}
+
 TEST(DamiaoMotor, ItsNumberOfThePositionGoesAroundAtItsEnd) {
   Motor motor = motor_with({.position_rad = 12.6});
   // −12.4 of ±12.5: the code round(0.1 / 25 · 65535) = 262.

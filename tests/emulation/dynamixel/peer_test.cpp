@@ -257,6 +257,21 @@ TEST(DynamixelPeer, ItHasPowerUntilItsWatchdogActs) {
   EXPECT_FALSE(bench.peer.has_power(0));
 }
 
+TEST(DynamixelPeer, WithoutPowerItLosesTheTurnsThatItCounted) {
+  Bench bench(std::vector{DynamixelPeer::Servo{.id = 1, .fault = ServoFault::power_cycle, .fault_from_ns = 10 * ms}});
+  bench.peer.joint(0).position_rad = 3.25 * 2.0 * std::numbers::pi;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  EXPECT_EQ(bench.peer.stored(0, 132, 4), 3 * 4096 + 1024);
+  bench.now_ns += 400 * ms;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  EXPECT_EQ(bench.peer.stored(0, 132, 4), 1024);
+  // From there it counts turns again.
+  bench.peer.joint(0).position_rad -= 2.0 * std::numbers::pi;
+  bench.now_ns += ms;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  EXPECT_EQ(static_cast<std::int32_t>(bench.peer.stored(0, 132, 4)), 1024 - 4096);
+}
+
 TEST(DynamixelPeer, FaultsOfTheLineAreThoseOfTheSeed) {
   const auto run = [](std::int64_t seed) {
     auto peer = DynamixelPeer::make({.line = {.corrupt = 0.3, .garbage = 0.3, .split = 0.3, .echo = 1}, .seed = seed});

@@ -64,6 +64,16 @@ Check check_positions(const RigJoint& one, double farthest) {
   return std::nullopt;
 }
 
+/// After which angle the number of a motor starts again when it gets power, 0 for one that knows its turn. Feetech
+/// servos count one turn. Dynamixel servos and Damiao motors count turns while they have power and lose them with it; a
+/// joint that may go farther than one turn of theirs is taken as they report it.
+double turn_of(BusKind kind, const MotorJoint& joint) {
+  constexpr double turn_rad = 2.0 * std::numbers::pi;
+  const bool loses_turns = kind == BusKind::dynamixel || kind == BusKind::damiao;
+  const bool only_one_fits = (joint.upper_rad - joint.lower_rad) * joint.gear < turn_rad;
+  return kind == BusKind::feetech || (loses_turns && only_one_fits) ? turn_rad : 0.0;
+}
+
 }  // namespace
 
 const JointWords& RigJoint::words() const { return slides ? sliding : turning; }
@@ -122,7 +132,7 @@ Check Rig::read_and_check() {
         const MotorAbility ability = ability_of(here.bus, joint.motor);
         joint.joint.gives_force = ability.torque_Nm > 0.0;
         if (here.bus.kind == BusKind::plugged) joint.joint.velocity_step_rad_per_s = ability.velocity_step_rad_per_s;
-        if (here.bus.kind == BusKind::feetech) joint.joint.turn_rad = 2.0 * std::numbers::pi;
+        joint.joint.turn_rad = turn_of(here.bus.kind, joint.joint);
       }
     }
   }

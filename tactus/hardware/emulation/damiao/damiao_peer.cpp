@@ -218,6 +218,13 @@ void DamiaoPeer::inject(std::int64_t at_ns) noexcept {
   }
   for (const Fault& fault : settings_.faults) {
     const std::uint8_t status = status_of(fault.kind);
+    if (fault.kind == FaultKind::power_cycle && at_ns - start_ns_ >= fault.from_ns) {
+      for (Motor& motor : motors_) {
+        if (!fault.concerns(motor.settings().id)) continue;
+        motor.live_until(start_ns_ + fault.from_ns);
+        motor.lose_power(start_ns_ + fault.from_ns);
+      }
+    }
     if (status == 0 || at_ns - start_ns_ < fault.from_ns) continue;
     for (Motor& motor : motors_) {
       if (!fault.concerns(motor.settings().id)) continue;
@@ -254,7 +261,7 @@ void DamiaoPeer::finish_frame() noexcept {
   turn_together_until(at_ns);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const std::uint32_t id = motors_[i].settings().id;
-    if (suffers(FaultKind::silence, id, at_ns)) continue;
+    if (suffers(FaultKind::silence, id, at_ns) || motors_[i].is_off(at_ns)) continue;
     const auto answer = motors_[i].answer(on_bus_.frame, at_ns);
     if (!answer) continue;
     const std::int64_t ready_ns =

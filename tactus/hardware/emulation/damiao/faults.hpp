@@ -27,6 +27,7 @@ enum class FaultKind : std::int64_t {
   garbage,          ///< of the adapter: bytes, or frames of nobody, between those of the motors
   heartbeat,        ///< of the adapter: notices every 10 ms
   bus_off,          ///< no frame passes
+  power_cycle,      ///< it is off for 0.3 s, and wakes disabled, without the turns that it had counted; once
   split             ///< of the adapter: frames come in pieces
 };
 constexpr auto enumerators(FaultKind) {
@@ -47,6 +48,7 @@ constexpr auto enumerators(FaultKind) {
                     Enumerator{FaultKind::garbage, "garbage"},
                     Enumerator{FaultKind::heartbeat, "heartbeat"},
                     Enumerator{FaultKind::bus_off, "bus-off"},
+                    Enumerator{FaultKind::power_cycle, "power-cycle"},
                     Enumerator{FaultKind::split, "split"}};
 }
 

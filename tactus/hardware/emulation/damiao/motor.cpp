@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace tactus::emulation::damiao {
 
@@ -86,6 +87,17 @@ double Motor::real(std::uint8_t which) const noexcept {
 
 void Motor::scale_velocity(double factor) noexcept {
   slot(v_max) = std::bit_cast<std::uint32_t>(static_cast<float>(real(v_max) * factor));
+}
+
+void Motor::lose_power(std::int64_t now_ns) noexcept {
+  constexpr std::int64_t off_ns = 300'000'000;
+  constexpr double turn_rad = 2.0 * std::numbers::pi;
+  if (off_until_ns_ >= 0) return;
+  off_until_ns_ = now_ns + off_ns;
+  status_ = disabled;
+  const double lost_rad = turn_rad * std::round(position_rad_ / turn_rad);
+  zero_rad_ += lost_rad;
+  position_rad_ -= lost_rad;
 }
 
 void Motor::fail(std::uint8_t status, bool stays) noexcept {

@@ -95,6 +95,9 @@ class Motor {
   void report(std::optional<std::uint8_t> status) noexcept { reported_ = status; }
   /// Whether it keeps its power when it is commanded to disable.
   void ignore_disable(bool ignores) noexcept { ignores_disable_ = ignores; }
+  /// It loses its power, once, for 0.3 s. It wakes disabled, within half a turn of its zero.
+  void lose_power(std::int64_t now_ns) noexcept;
+  [[nodiscard]] bool is_off(std::int64_t now_ns) const noexcept { return now_ns < off_until_ns_; }
   /// A motor whose velocity register is not that of its type.
   void scale_velocity(double factor) noexcept;
 
@@ -125,6 +128,7 @@ class Motor {
   double zero_rad_ = 0.0;  ///< of one that turns with others
   bool stays_ = false;     ///< its fault, whatever it receives
   bool ignores_disable_ = false;
+  std::int64_t off_until_ns_ = -1;                ///< negative: it never lost its power
   std::optional<std::uint8_t> reported_;          ///< in place of its status
   std::int64_t now_ns_ = -1, spoken_to_ns_ = -1;  ///< negative: not yet
   double aim_rad_ = 0.0, aim_rad_per_s_ = 0.0, stiffness_ = 0.0, damping_ = 0.0, feedforward_Nm_ = 0.0;

@@ -138,6 +138,8 @@ void DynamixelPeer::live(State& servo, std::int64_t now_ns) noexcept {
       servo.broke = true;
       servo.off_until_ns = servo.fault_from_ns + off_ns;
       boot(servo);
+      // The place within a turn is all that it knows when it wakes.
+      servo.lost_turns = static_cast<std::int64_t>(std::floor(servo.joint.position_rad / turn_rad));
     } else if (servo.fault == ServoFault::hot) {
       turn_until(servo.fault_from_ns);
       servo.broke = true;
@@ -150,7 +152,9 @@ void DynamixelPeer::live(State& servo, std::int64_t now_ns) noexcept {
   put(servo, 120, 2, now_ns / 1'000'000 % 32768);
   put(servo, 126, 2, current(servo));
   put(servo, 128, 4, static_cast<std::int64_t>(std::floor(servo.joint.velocity_rad_per_s / velocity_unit + 0.5)));
-  put(servo, 132, 4, static_cast<std::int64_t>(std::floor(servo.joint.position_rad / turn_rad * 4096.0 + 0.5)));
+  put(servo, 132, 4,
+      static_cast<std::int64_t>(std::floor(servo.joint.position_rad / turn_rad * 4096.0 + 0.5)) -
+          4096 * servo.lost_turns);
 }
 
 void DynamixelPeer::advance(std::int64_t now_ns) noexcept {

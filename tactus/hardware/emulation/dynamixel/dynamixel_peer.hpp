@@ -80,6 +80,7 @@ class DynamixelPeer final : public wire::WireEnd {
     bool broke = false;      ///< the fault that happens once has happened
     std::int64_t off_until_ns = 0;
     std::int64_t largest = 0;
+    std::int64_t lost_turns = 0;  ///< which it no longer counts, since it was without power
   };
   /// An answer that is being written.
   struct Packet {
