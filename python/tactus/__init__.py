@@ -24,9 +24,11 @@ from .commands import (
     schema,
     stability,
 )
+from .devices import JointDevice, MotorCommand, MotorReading, register_device
 from .errors import Interrupted, JobError, ReleasedError, RequestError, TactusError
 from .logs import Log, Table, read_log
 from .results import Record
+from .teleoperator import Joints, Report, Sample, State, Teleoperator
 
 __version__: str
 
@@ -34,14 +36,22 @@ __all__ = [
     "Cancellation",
     "Interrupted",
     "JobError",
+    "JointDevice",
+    "Joints",
     "Log",
+    "MotorCommand",
+    "MotorReading",
     "Output",
     "Record",
     "ReleasedError",
+    "Report",
     "RequestError",
     "Result",
+    "Sample",
+    "State",
     "Table",
     "TactusError",
+    "Teleoperator",
     "advise",
     "command",
     "diagnose",
@@ -50,6 +60,7 @@ __all__ = [
     "identify",
     "read_log",
     "reference",
+    "register_device",
     "results_schema",
     "run",
     "schema",

@@ -10,7 +10,7 @@ from typing import Any, Callable, List
 
 from .errors import TactusError, exception_of
 
-INTERFACE_MAJOR, INTERFACE_MINOR = 0, 1
+INTERFACE_MAJOR, INTERFACE_MINOR = 0, 2
 LIBRARY_NAME = "libtactus.so.0"
 
 Progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_double, ctypes.c_void_p)
@@ -95,6 +95,118 @@ class ColumnView(_View):
     ]
 
 
+class MotorCommandStruct(ctypes.Structure):
+    _fields_ = [
+        ("torque_Nm", ctypes.c_double),
+        ("law_position_rad", ctypes.c_double),
+        ("law_velocity_rad_per_s", ctypes.c_double),
+        ("law_stiffness_Nm_per_rad", ctypes.c_double),
+        ("law_damping_Nms_per_rad", ctypes.c_double),
+        ("enabled", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+    ]
+
+
+class MotorReadingStruct(ctypes.Structure):
+    _fields_ = [
+        ("position_rad", ctypes.c_double),
+        ("velocity_rad_per_s", ctypes.c_double),
+        ("torque_Nm", ctypes.c_double),
+        ("temperature_C", ctypes.c_double),
+        ("enabled", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+    ]
+
+
+MakeDevice = ctypes.CFUNCTYPE(
+    ctypes.c_int32, ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64), ctypes.c_size_t,
+    ctypes.POINTER(ctypes.c_void_p), ctypes.c_void_p, ctypes.c_size_t,
+)
+OpenDevice = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
+ExchangeDevice = ctypes.CFUNCTYPE(
+    ctypes.c_int32, ctypes.c_void_p, ctypes.POINTER(MotorCommandStruct), ctypes.POINTER(MotorReadingStruct),
+    ctypes.c_size_t, ctypes.c_void_p, ctypes.c_size_t,
+)
+CloseDevice = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
+
+
+class JointDriver(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("name", ctypes.c_char_p),
+        ("summary", ctypes.c_char_p),
+        ("cycle_s", ctypes.c_double),
+        ("torque_limit_Nm", ctypes.c_double),
+        ("velocity_limit_rad_per_s", ctypes.c_double),
+        ("velocity_step_rad_per_s", ctypes.c_double),
+        ("stiffness_limit_Nm_per_rad", ctypes.c_double),
+        ("damping_limit_Nms_per_rad", ctypes.c_double),
+        ("user", ctypes.c_void_p),
+        ("make", MakeDevice),
+        ("open", OpenDevice),
+        ("exchange", ExchangeDevice),
+        ("close", CloseDevice),
+        ("release", CloseDevice),
+    ]
+
+
+class TeleoperatorOptions(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("experiment", ctypes.c_char_p),
+        ("rig", ctypes.c_char_p),
+        ("set", ctypes.POINTER(ctypes.c_char_p)),
+        ("set_count", ctypes.c_size_t),
+        ("log_folder", ctypes.c_char_p),
+        ("rehearsal", ctypes.c_int32),
+        ("priority", ctypes.c_int32),
+        ("hand_reach_rad", ctypes.c_double),
+        ("hand_after_s", ctypes.c_double),
+    ]
+
+
+class TeleoperatorView(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("running", ctypes.c_int32),
+        ("leader_state", ctypes.c_int32),
+        ("follower_state", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+        ("leader_cause", ctypes.c_char_p),
+        ("follower_cause", ctypes.c_char_p),
+        ("line", ctypes.c_char_p),
+        ("joints", ctypes.c_size_t),
+        ("cycle", ctypes.c_int64),
+        ("time_ns", ctypes.c_int64),
+    ]
+
+
+class JointSample(ctypes.Structure):
+    _fields_ = [
+        ("position", ctypes.c_double),
+        ("velocity", ctypes.c_double),
+        ("torque", ctypes.c_double),
+        ("command", ctypes.c_double),
+        ("external_torque", ctypes.c_double),
+    ]
+
+
+class TeleoperatorReport(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("duration_s", ctypes.c_double),
+        ("cycles", ctypes.c_int64),
+        ("active_cycles", ctypes.c_int64),
+        ("armings", ctypes.c_int64),
+        ("holds", ctypes.c_int64),
+        ("missed", ctypes.c_int64),
+        ("late", ctypes.c_int64),
+        ("late_own", ctypes.c_int64),
+        ("latest_start_s", ctypes.c_double),
+        ("log_dropped", ctypes.c_uint64),
+    ]
+
+
 _handle = ctypes.c_uint64
 _to_handle = ctypes.POINTER(ctypes.c_uint64)
 _to_double = ctypes.POINTER(ctypes.c_double)
@@ -125,6 +237,19 @@ _FUNCTIONS: dict[str, list[Any]] = {
     "tactus_log_table": [_handle, _size, ctypes.POINTER(TableView)],
     "tactus_log_column": [_handle, _size, _size, ctypes.POINTER(ColumnView)],
     "tactus_log_release": [_handle],
+    "tactus_joint_driver_register": [ctypes.POINTER(JointDriver), _to_handle],
+    "tactus_teleoperator_start": [ctypes.POINTER(TeleoperatorOptions), _to_handle, _to_handle],
+    "tactus_teleoperator_press": [_handle, ctypes.c_char_p, _to_handle],
+    "tactus_teleoperator_read": [_handle, ctypes.POINTER(TeleoperatorView)],
+    "tactus_teleoperator_joint": [
+        _handle, _size, ctypes.POINTER(ctypes.c_char_p), ctypes.POINTER(ctypes.c_int32),
+    ],
+    "tactus_teleoperator_newest": [
+        _handle, _size, ctypes.POINTER(JointSample), ctypes.POINTER(JointSample), ctypes.POINTER(ctypes.c_int64),
+    ],
+    "tactus_teleoperator_stop": [_handle, _to_handle],
+    "tactus_teleoperator_report_read": [_handle, ctypes.POINTER(TeleoperatorReport)],
+    "tactus_teleoperator_release": [_handle],
 }
 
 

@@ -45,6 +45,12 @@ std::vector<tactus_status> statuses_of_all(std::uint64_t handle) {
   tactus_log_view log = TACTUS_LOG_VIEW_INIT;
   tactus_table_view table = TACTUS_TABLE_VIEW_INIT;
   tactus_column_view column = TACTUS_COLUMN_VIEW_INIT;
+  tactus_teleoperator_view pair = TACTUS_TELEOPERATOR_VIEW_INIT;
+  tactus_teleoperator_report report = TACTUS_TELEOPERATOR_REPORT_INIT;
+  tactus_joint_sample joint{};
+  const char* name = nullptr;
+  std::int32_t turns = 0;
+  std::int64_t time_ns = 0;
   return {tactus_error_read(handle, &error),
           tactus_cancellation_step(handle, 0.0, 0.0, &number),
           tactus_cancellation_intended(handle, 0.0, &number),
@@ -56,12 +62,18 @@ std::vector<tactus_status> statuses_of_all(std::uint64_t handle) {
           tactus_outcome_read(handle, &outcome),
           tactus_log_read(handle, &log),
           tactus_log_table(handle, 0, &table),
-          tactus_log_column(handle, 0, 0, &column)};
+          tactus_log_column(handle, 0, 0, &column),
+          tactus_teleoperator_press(handle, "arm", nullptr),
+          tactus_teleoperator_read(handle, &pair),
+          tactus_teleoperator_joint(handle, 0, &name, &turns),
+          tactus_teleoperator_newest(handle, 1, &joint, &joint, &time_ns),
+          tactus_teleoperator_stop(handle, nullptr),
+          tactus_teleoperator_report_read(handle, &report)};
 }
 
 std::vector<tactus_status> releases_of_all(std::uint64_t handle) {
   return {tactus_error_release(handle), tactus_cancellation_release(handle), tactus_outcome_release(handle),
-          tactus_log_release(handle)};
+          tactus_log_release(handle), tactus_teleoperator_release(handle)};
 }
 
 void expect_bad(const std::vector<tactus_status>& statuses) {

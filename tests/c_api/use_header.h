@@ -13,6 +13,11 @@ static int use_tactus(void) {
   tactus_log_view log_view = TACTUS_LOG_VIEW_INIT;
   tactus_table_view table_view = TACTUS_TABLE_VIEW_INIT;
   tactus_column_view column_view = TACTUS_COLUMN_VIEW_INIT;
+  tactus_joint_driver driver = TACTUS_JOINT_DRIVER_INIT;
+  tactus_teleoperator_options pair_options = TACTUS_TELEOPERATOR_OPTIONS_INIT;
+  tactus_teleoperator_view pair_view = TACTUS_TELEOPERATOR_VIEW_INIT;
+  tactus_teleoperator_report report = TACTUS_TELEOPERATOR_REPORT_INIT;
+  tactus_teleoperator pair = 0;
   const char* const words[] = {"schema", "tapping"};
   tactus_cancellation cancellation = 0;
   tactus_outcome outcome = 0;
@@ -34,6 +39,10 @@ static int use_tactus(void) {
   if (tactus_log_read(0, &log_view) != TACTUS_BAD_HANDLE) return 12;
   if (tactus_log_table(0, 0, &table_view) != TACTUS_BAD_HANDLE) return 13;
   if (tactus_log_column(0, 0, 0, &column_view) != TACTUS_BAD_HANDLE) return 14;
+  if (tactus_joint_driver_register(&driver, 0) != TACTUS_BAD_ARGUMENT) return 15;
+  if (tactus_teleoperator_start(&pair_options, &pair, 0) != TACTUS_BAD_ARGUMENT || pair != 0) return 16;
+  if (tactus_teleoperator_read(pair, &pair_view) != TACTUS_BAD_HANDLE) return 17;
+  if (tactus_teleoperator_report_read(pair, &report) != TACTUS_BAD_HANDLE) return 18;
   return 0;
 }
 

@@ -156,12 +156,14 @@ struct Bench {
       : faults(std::move(of_follower)) {
     // Motors are asked before a tick is.
     advance(400 * ms);
+    start({.listen_before_arming_s = 0.1, .arm_at_once = true}, believed);
+  }
+  void start(const RigLoop::Params& params, const std::optional<arm::Chain::Params>& believed = {}) {
     ArmPairSetup of_sites = setup;
     if (believed) of_sites.leader.arm.chain = of_sites.follower.arm.chain = *believed;
     auto sites = arm_sites(of_sites.params, of_sites, leader->limits(), follower->limits());
     EXPECT_TRUE(sites) << describe(sites.error());
-    auto made = RigLoop::around(*std::move(sites), Seconds{1e-9 * tick_ns},
-                                {.listen_before_arming_s = 0.1, .arm_at_once = true}, exchange, *leader, *follower);
+    auto made = RigLoop::around(*std::move(sites), Seconds{1e-9 * tick_ns}, params, exchange, *leader, *follower);
     EXPECT_TRUE(made) << describe(made.error());
     loop.emplace(*std::move(made));
   }

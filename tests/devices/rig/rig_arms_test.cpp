@@ -36,6 +36,13 @@ TEST(RigArms, AlignCarryThemselvesTryEachMotorAndTheFollowerGoesToItsLeader) {
   EXPECT_GT(Bench::torques(*bench.leader_link).cwiseAbs().maxCoeff(), 1.0) << "it has a weight";
 }
 
+TEST(RigArms, AnArmingBeforeTheFirstReadingsWaitsForThem) {
+  Bench bench;
+  bench.start({.listen_before_arming_s = 0.1});
+  ASSERT_TRUE(bench.exchange.words.try_push(runtime::SiteWord::arm));
+  EXPECT_TRUE(bench.couple()) << "typed before the first control cycle";
+}
+
 /// The arm with masses and lengths that are so many times as large.
 arm::Chain::Params scaled(double masses, double lengths) {
   arm::Chain::Params model = setup_of().leader.arm.chain;

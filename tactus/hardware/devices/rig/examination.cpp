@@ -152,7 +152,8 @@ Result<BusFinding> examine(const StatedBus& stated) {
                                 {}});
     }
   }
-  if (wrong && !refused) found.problems.push_back(*wrong);
+  // A driver of somebody else's has no sheets that say why.
+  if (wrong && (!refused || stated.kind == BusKind::plugged)) found.problems.push_back(*wrong);
   bus->reset();  // so that the port is free for another rate
   note_swaps(stated, found);
   if (!refused || !all_silent) return found;

@@ -68,11 +68,22 @@ void RigLoop::judge_distance() noexcept {
   second_.too_far = !active_ && (!seen_ || !(second_.farthest <= params_.farthest));
 }
 
+/// Whether the operator arms now. Before the first readings nobody knows how far apart the arms are, so an arming waits
+/// for them, unless the operator stops or they take too long.
+bool RigLoop::arms(const control::SiteRequests& pressed) noexcept {
+  constexpr double longest_wait_s = 1.0;
+  if (pressed.arm) arm_until_s_ = console_.time_s() + longest_wait_s;
+  const bool wanted = console_.time_s() < arm_until_s_ && !pressed.emergency_stop && !pressed.leave;
+  if (wanted && !read_once_) return false;
+  arm_until_s_ = 0.0;
+  return wanted;
+}
+
 /// They align when somebody arms and not before, so that a leader that was moved meanwhile is followed from where it
 /// is.
 control::SiteRequests RigLoop::asked(const control::SiteRequests& pressed) noexcept {
   control::SiteRequests request = pressed;
-  if (second_.too_far) request.arm = false;
+  request.arm = arms(pressed) && !second_.too_far;
   const bool unaligned = second_.leader == SiteState::configure || second_.follower == SiteState::configure;
   request.align = false;
   // Neither gets power where the other can't carry itself.
@@ -110,6 +121,7 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
   };
   seen_ = trusted(done.master.reading) && trusted(done.slave.reading);
   if (seen_) {
+    read_once_ = true;
     leader_read_ = done.master.reading;
     follower_read_ = done.slave.reading;
   }

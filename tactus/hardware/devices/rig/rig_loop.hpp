@@ -16,7 +16,8 @@
 namespace tactus::devices {
 
 /// A leader and a follower of several joints on one computer, supervised: the step of a servo thread. No motor has
-/// power until somebody arms, and nobody can while a joint of the follower is farther from its leader than it may be.
+/// power until somebody arms, and nobody can while a joint of the follower is farther from its leader than it may be;
+/// an arming that comes before the first readings waits for them, for a second at most.
 /// Then both hold still, test the sign of each motor, the coupling comes in over `blend_s`, and the follower goes to
 /// where its leader is at no more than `silence.catch_up_m_per_s`. Does not allocate, lock or block, as far as the
 /// devices do not.
@@ -59,6 +60,7 @@ class RigLoop {
  private:
   RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader,
           MotorBusDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair);
+  [[nodiscard]] bool arms(const control::SiteRequests& pressed) noexcept;
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
   void judge_distance() noexcept;
   void note_troubles() noexcept;
@@ -77,10 +79,12 @@ class RigLoop {
   std::optional<RigSecond> at_end_;
   RigSecond second_;
   RigTotals totals_;
-  bool seen_ = false;     ///< both were read
-  bool active_ = false;   ///< the follower, at the tick before
-  bool arming_ = false;   ///< asked for where they had not been aligned yet
-  bool refused_ = false;  ///< because an arm is heavier than its motors may carry
+  double arm_until_s_ = 0.0;  ///< how long an arming waits for the first readings
+  bool read_once_ = false;    ///< both were, at some cycle
+  bool seen_ = false;         ///< both were read
+  bool active_ = false;       ///< the follower, at the tick before
+  bool arming_ = false;       ///< asked for where they had not been aligned yet
+  bool refused_ = false;      ///< because an arm is heavier than its motors may carry
 };
 
 }  // namespace tactus::devices

@@ -12,7 +12,7 @@
 namespace tactus::c_api {
 
 /// Kinds of handles.
-enum Kind : unsigned { error_kind = 1, cancellation_kind, outcome_kind, log_kind };
+enum Kind : unsigned { error_kind = 1, cancellation_kind, outcome_kind, log_kind, teleoperator_kind };
 
 tactus_status status_of(ErrorCode code);
 

@@ -1,0 +1,8 @@
+from dataclasses import dataclass
+
+
+@dataclass
+class CameraConfig:
+    width: int = 64
+    height: int = 48
+    fps: int = 60

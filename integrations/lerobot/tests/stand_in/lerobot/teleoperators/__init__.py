@@ -1,0 +1,49 @@
+import abc
+from dataclasses import dataclass
+
+from ..registry import ChoiceRegistry
+
+
+@dataclass(kw_only=True)
+class TeleoperatorConfig(ChoiceRegistry):
+    id: "str | None" = None
+    calibration_dir: "str | None" = None
+
+
+class Teleoperator(abc.ABC):
+    def __init__(self, config):
+        self.id = config.id
+
+    @property
+    @abc.abstractmethod
+    def action_features(self): ...
+
+    @property
+    @abc.abstractmethod
+    def feedback_features(self): ...
+
+    @property
+    @abc.abstractmethod
+    def is_connected(self): ...
+
+    @property
+    @abc.abstractmethod
+    def is_calibrated(self): ...
+
+    @abc.abstractmethod
+    def connect(self, calibrate=True): ...
+
+    @abc.abstractmethod
+    def calibrate(self): ...
+
+    @abc.abstractmethod
+    def configure(self): ...
+
+    @abc.abstractmethod
+    def get_action(self): ...
+
+    @abc.abstractmethod
+    def send_feedback(self, feedback): ...
+
+    @abc.abstractmethod
+    def disconnect(self): ...
