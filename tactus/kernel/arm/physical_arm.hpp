@@ -23,6 +23,9 @@ struct MotorParams {
   /// The range of velocity in the host's table over the drive's own (VMAX of Damiao's drives): the host reads so many
   /// times the velocity, and what it commands arrives divided by this. Positive.
   double velocity_scale = 1.0;
+  /// The torque that the motor gives over the one that its drive assumes and reports: its torque constant over that of
+  /// the drive's table. It scales the drive's law as well. Positive.
+  double torque_scale = 1.0;
 };
 
 /// The whole arm.

@@ -18,6 +18,8 @@ ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain&
       told_(JointVector::Zero(chain.joints())),
       most_(effort_limits(arm.chain)),
       observes_(params.torque == TorqueSource::observer),
+      lacking_(arm.lacking_N_m.size() == chain.joints() ? arm.lacking_N_m : JointVector::Zero(chain.joints())),
+      bias_(params.torque == TorqueSource::observer ? params.observer.bias_distance_m : 0.0, arm.chain, dt),
       dead_band_(JointVector::Zero(chain.joints())),
       stiffness_(params.stiffness_share * params.gains.of(chain.joints(), &DriveGains::stiffness_N_m_per_rad)),
       damping_(params.gains.of(chain.joints(), &DriveGains::damping_N_m_s_per_rad)),
@@ -101,7 +103,7 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
   if (passivity_.counts()) passivity_.hold_back(leader, told_);
   if (tool_coupling_) leader = tool_coupling_->wanted(leader, reading.position);
   Output output;
-  output.support = feed_forward_.torque(reading);
+  output.support = feed_forward_.torque(reading) + lacking_;
   output.command = {.position = leader.position,
                     .velocity = leader.velocity,
                     .stiffness = stiffness_,
@@ -114,7 +116,11 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
     output.command.torque += both.torque;
     output.message.external_torque = both.external;
   } else if (observes_) {
-    output.message.external_torque = std::visit([&](auto& one) { return one.step(reading); }, observer_);
+    output.message.external_torque = std::visit([&](auto& one) { return one.step(reading); }, observer_) + lacking_;
+    if (bias_.follows()) {
+      const ToolJacobian tool = chain_.jacobian(reading.position, chain_.joints() - 1, tool_m_).topRows<3>();
+      output.message.external_torque -= bias_.step(output.message.external_torque, (tool * reading.velocity).norm());
+    }
   }
   if (wanted_motion_.adds()) {
     output.command.torque += wanted_motion_.step(reading, leader.velocity, output.message.external_torque);

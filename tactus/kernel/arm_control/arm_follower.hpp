@@ -8,6 +8,7 @@
 #include <tactus/kernel/arm_control/passivity.hpp>
 #include <tactus/kernel/arm_control/tool_coupling.hpp>
 #include <tactus/kernel/arm_control/tool_limit.hpp>
+#include <tactus/kernel/arm_control/torque_bias.hpp>
 #include <tactus/kernel/arm_control/wanted_motion.hpp>
 
 #include <array>
@@ -28,16 +29,24 @@ constexpr auto enumerators(TorqueSource) {
 /// outside. A dead band passes only what exceeds it: |r| − share·Coulomb, with the sign of r, or nothing. Without it, a
 /// false torque pushes against the hand, times the gain; along a direction in which the tool hardly moves it is a
 /// large force. With it, forces within friction are not felt.
+///
+/// A model whose masses are wrong makes a torque that changes slowly with the pose. `bias_distance_m` holds that down
+/// without taking a slow contact for it: the bias follows the estimate by the distance that the tool travels without
+/// contact and faster than 30 mm/s, and not by time (`TorqueBias`).
 struct TorqueObserverParams : ExternalTorqueObserver::Params {
   JointModel joints = JointModel::rigid;
   double dead_band_share = 0.0;
+  double bias_distance_m = 0.0;
   static constexpr auto fields() {
     return joined(
         ExternalTorqueObserver::Params::fields(),
         List{field("joints", &TorqueObserverParams::joints,
                    "What it takes the joints for: elastic ones filter in third order."),
              field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
-                   "Share of each joint's Coulomb friction that torque must exceed to be reported.")});
+                   "Share of each joint's Coulomb friction that torque must exceed to be reported."),
+             field(
+                 "bias_distance_m", &TorqueObserverParams::bias_distance_m, tactus::units::metre, between(0.0, 10.0),
+                 "Free travel of the tool in which torque from outside that stays counts as bias, to 63 %; 0: none.")});
   }
 };
 
@@ -96,6 +105,8 @@ class ArmFollower {
     /// Where the leader couples so: in place of the drives' gains and of `torque`.
     std::optional<FourChannelCoupling> four_channel = std::nullopt;
     PassivityCoupling passivity = {};
+    /// What the arm's motors must give beyond `chain`'s gravity, as a tare found it (`Tare`); no rows: nothing.
+    JointVector lacking_N_m = {};
   };
   struct Output {
     ArmCommand command;
@@ -133,6 +144,8 @@ class ArmFollower {
   JointVector told_;  ///< the external torque that it sent last
   JointVector most_;  ///< torque of the bus
   bool observes_;
+  JointVector lacking_;
+  TorqueBias bias_;
   JointVector dead_band_;
   JointVector stiffness_;
   JointVector damping_;

@@ -33,6 +33,8 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       stiffness_(JointVector::Zero(chain.joints())),
       damping_(pulls(params.method) ? stiffness_ : drive_damping(params, chain.joints())),
       damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
+      washed_damping_(pulls(params.method) ? 0.0 : params.damping_washout_Hz, effort_limits(arm.carried), dt),
+      lacking_(arm.lacking_N_m.size() == chain.joints() ? arm.lacking_N_m : JointVector::Zero(chain.joints())),
       model_(model),
       factr_(params.factr, arm.carried, chain),
       avoidance_(params.avoidance, chain.joints()),
@@ -70,7 +72,8 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
                                  .drive_damping_N_m_s_per_rad = drive_damping(params, chain->joints()),
                                  .drive_damping_limit_N_s_per_m = params.drive_damping_limit_N_s_per_m,
                                  .friction_share = params.feed_forward.friction_share,
-                                 .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
+                                 .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s,
+                                 .damping_washout_Hz = params.damping_washout_Hz};
   const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
   if (!model) return under("model", model.error());
   const int joints = chain->joints();
@@ -88,15 +91,23 @@ ToolJacobian ArmLeader::tool_at(const JointVector& position) const noexcept {
 }
 
 /// All of the bus's torque but what comes from the follower.
-JointVector ArmLeader::beside_display(const ArmReading& reading, const JointVector& support) noexcept {
+JointVector ArmLeader::beside_display(const ArmReading& reading, const JointVector& support,
+                                      const JointVector& external) noexcept {
   JointVector torque = support;
   const bool gives_back = !pulls(params_.method) && damping_limit_.limits();
-  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
+  if (params_.damping_N_s_per_m > 0.0 || gives_back || washed_damping_.washes()) {
     const ToolJacobian tool = tool_at(reading.position);
     const arm::Vector3 velocity = tool * reading.velocity;
     arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
-    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
+    const arm::Matrix3 excess = gives_back ? damping_limit_.excess(tool) : arm::Matrix3(arm::Matrix3::Zero());
+    if (gives_back) force_N += excess * velocity;
     torque += tool.transpose() * force_N;
+    if (washed_damping_.washes()) {
+      const arm::Matrix3 over_the_bus = params_.damping_N_s_per_m * arm::Matrix3::Identity() - excess;
+      JointMatrix dampers = tool.transpose() * over_the_bus * tool;
+      dampers.diagonal() += damping_;
+      torque += washed_damping_.step(tool, dampers, reading.velocity, external);
+    }
   }
   if (params_.method == ArmMethod::factr) torque += factr_.step(reading);
   return torque;
@@ -110,8 +121,8 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   }
   const bool reflects = !pulls(params_.method);
   Output output;
-  output.support = feed_forward_.torque(reading);
-  const JointVector undisplayed = beside_display(reading, output.support);
+  output.support = feed_forward_.torque(reading) + lacking_;
+  const JointVector undisplayed = beside_display(reading, output.support, follower.external_torque);
   JointVector displayed = JointVector::Zero(joints);
   if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);
   if (params_.method == ArmMethod::feedback_avoidance) {
@@ -146,7 +157,8 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
     output.induced = model_.position();
     output.message.position -= output.induced;
     output.message.velocity -= model_.velocity();
-    model_.step(acting_, reading.position, reading.velocity);
+    model_.step(acting_, reading.position, reading.velocity,
+                washed_damping_.washes() ? washed_damping_.left() : JointMatrix());
     acting_ = displayed;
   }
   output.message.position = command_position_.step(output.message.position);

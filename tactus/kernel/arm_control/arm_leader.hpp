@@ -10,6 +10,7 @@
 #include <tactus/kernel/arm_control/joint_low_pass.hpp>
 #include <tactus/kernel/arm_control/passivity.hpp>
 #include <tactus/kernel/arm_control/tool_limit.hpp>
+#include <tactus/kernel/arm_control/washed_damping.hpp>
 
 #include <array>
 
@@ -60,14 +61,15 @@ struct DriveDamping {
 ///
 ///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇ − drive damping·q̇,
 ///
-/// of which the second part is displayed and the last is the drives' own. What the last comes to at the tool
-/// beyond a limit is given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their
-/// classes describe in addition, and with passive ports a damper acts alongside it (`PassiveLeader`). With
-/// position-position it is feed-forward and the drives' law, towards the follower; with four-channel what `FourChannel`
-/// adds as well. What the bus carries saturates at each joint's effort limit. Gates are behind it (`leader_site`); the
-/// model of induced motion lives on what `applied` states that they let through. Sources: position-position as
-/// openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's stiffness as i2rt's YAM
-/// has it (`bilateral_kp`, MIT); the rest as on one axis
+/// with what dampers do to slow free motion given back if `damping_washout_Hz` is above 0 (`WashedDamping`), of which
+/// the second part is displayed and the last is the drives' own. What the last comes to at the tool beyond a limit is
+/// given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their classes describe in
+/// addition, and with passive ports a damper acts alongside it (`PassiveLeader`). With position-position it is
+/// feed-forward and the drives' law, towards the follower; with four-channel what `FourChannel` adds as well. What the
+/// bus carries saturates at each joint's effort limit. Gates are behind it (`leader_site`); the model of induced motion
+/// lives on what `applied` states that they let through. Sources: position-position as openarm_teleop ships it
+/// (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's stiffness as i2rt's YAM has it (`bilateral_kp`,
+/// MIT); the rest as on one axis
 /// (`control::PositionForceMaster`).
 class ArmLeader {
  public:
@@ -77,6 +79,7 @@ class ArmLeader {
     double damping_N_s_per_m = 0.0;
     EachJoint<DriveDamping> drive_damping = {};
     double drive_damping_limit_N_s_per_m = 0.0;
+    double damping_washout_Hz = 0.0;
     double force_low_pass_Hz = 0.0;
     EachJoint<JointCutoff> force_low_pass_each = {};
     double command_low_pass_Hz = 0.0;
@@ -101,6 +104,10 @@ class ArmLeader {
           field("drive_damping_limit_N_s_per_m", &P::drive_damping_limit_N_s_per_m,
                 tactus::units::newton_second_per_metre, between(0.0, 1e4),
                 "The most that drive_damping may come to at the tool, in any direction; 0 is no limit."),
+          field(
+              "damping_washout_Hz", &P::damping_washout_Hz, tactus::units::hertz, between(0.0, 50.0),
+              "In free motion the leader's dampers resist what is faster than this; in contact, along its normal, all "
+              "motion. 0: all motion everywhere."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the displayed torque; 0: no filter."),
           field("force_low_pass_each", &P::force_low_pass_each, "Corners of joints that have one of their own."),
@@ -123,6 +130,8 @@ class ArmLeader {
     arm::Chain::Params carried;
     InducedMotion::Arm induced;
     Joints<DriveGains> gains = {};  ///< of the follower's drives, for position-position
+    /// What the arm's motors must give beyond `carried`'s gravity, as a tare found it (`Tare`); no rows: nothing.
+    JointVector lacking_N_m = {};
   };
   struct Output {
     ArmCommand command;
@@ -146,7 +155,8 @@ class ArmLeader {
   ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
             const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt);
   [[nodiscard]] ToolJacobian tool_at(const JointVector& position) const noexcept;
-  [[nodiscard]] JointVector beside_display(const ArmReading& reading, const JointVector& support) noexcept;
+  [[nodiscard]] JointVector beside_display(const ArmReading& reading, const JointVector& support,
+                                           const JointVector& external) noexcept;
 
   Params params_;
   FeedForward feed_forward_;
@@ -155,6 +165,8 @@ class ArmLeader {
   JointVector stiffness_;
   JointVector damping_;
   ToolLimit damping_limit_;
+  WashedDamping washed_damping_;
+  JointVector lacking_;
   InducedMotion model_;
   FactrLaw factr_;
   FeedbackAvoidance avoidance_;

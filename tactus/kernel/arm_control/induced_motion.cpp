@@ -9,8 +9,6 @@
 
 namespace tactus::arm_control {
 
-using arm::JointMatrix;
-
 InducedMotion::InducedMotion(const Params& params, const Site& site, const Arm& arm, const arm::Chain& chain,
                              Seconds dt)
     : chain_(chain),
@@ -28,7 +26,8 @@ InducedMotion::InducedMotion(const Params& params, const Site& site, const Arm& 
       joint_damping_(arm.joint_damping_N_m_s_per_rad.size() == chain.joints() ? arm.joint_damping_N_m_s_per_rad
                                                                               : JointVector::Zero(chain.joints())),
       dt_s_(dt.value),
-      washed_(1.0 - std::exp(-2.0 * std::numbers::pi * params.washout_Hz * dt.value)) {
+      washed_(1.0 - std::exp(-2.0 * std::numbers::pi * params.washout_Hz * dt.value)),
+      damper_washed_(1.0 - std::exp(-2.0 * std::numbers::pi * site.damping_washout_Hz * dt.value)) {
   for (std::size_t i = 0; i < friction_.size(); ++i) {
     armature_[static_cast<Eigen::Index>(i)] = arm.chain.joints[i].drive.reflected_kg_m2();
   }
@@ -50,6 +49,7 @@ void InducedMotion::reset() noexcept {
   velocity_ = position_;
   slow_position_ = JointVector::Zero(joints());
   slow_velocity_ = slow_position_;
+  slow_for_dampers_ = slow_position_;
 }
 
 double InducedMotion::net_friction(std::size_t joint, double velocity) const noexcept {
@@ -83,9 +83,9 @@ InducedMotion::Matrices InducedMotion::matrices(const JointVector& measured_posi
     const ToolJacobian tool = jacobian.topRows<3>();
     of_site -= tool.transpose() * drive_damping_limit_.excess(tool) * tool;
   }
-  if (!elastic_) return {.inertia = inertia, .damping = damping + of_site, .stiffness = stiffness};
+  if (!elastic_) return {.inertia = inertia, .damping = damping + of_site, .stiffness = stiffness, .of_site = of_site};
   const StateMatrix none = StateMatrix::Zero(2 * count, 2 * count);
-  Matrices found{.inertia = none, .damping = none, .stiffness = none};
+  Matrices found{.inertia = none, .damping = none, .stiffness = none, .of_site = of_site};
   const auto join = [count](StateMatrix& matrix, const JointVector& spring) {
     matrix.topLeftCorner(count, count).diagonal() += spring;
     matrix.bottomRightCorner(count, count).diagonal() += spring;
@@ -104,11 +104,12 @@ InducedMotion::Matrices InducedMotion::matrices(const JointVector& measured_posi
 }
 
 void InducedMotion::step(const JointVector& displayed, const JointVector& measured_position,
-                         const JointVector& measured_velocity) noexcept {
+                         const JointVector& measured_velocity, const JointMatrix& left_out) noexcept {
   const Matrices m = matrices(measured_position);
   const StateMatrix half = 0.5 * dt_s_ * (m.damping + 0.5 * dt_s_ * m.stiffness);
   State right = (m.inertia - half) * velocity_ - dt_s_ * (m.stiffness * position_);
   right.head(joints()) += dt_s_ * displayed;
+  if (left_out.size() > 0) right.head(joints()) += dt_s_ * (left_out * (m.of_site * slow_for_dampers_));
   StateMatrix left = m.inertia + half;
   for (Eigen::Index i = 0; i < joints(); ++i) {
     left(i, i) += dt_s_ * friction_secant(static_cast<std::size_t>(i), measured_velocity[i], velocity_[i]);
@@ -118,6 +119,7 @@ void InducedMotion::step(const JointVector& displayed, const JointVector& measur
   position_ += 0.5 * dt_s_ * (before + velocity_);
   slow_position_ += washed_ * (position_.head(joints()) - slow_position_);
   slow_velocity_ += washed_ * (velocity_.head(joints()) - slow_velocity_);
+  slow_for_dampers_ += damper_washed_ * (velocity_.head(joints()) - slow_for_dampers_);
 }
 
 }  // namespace tactus::arm_control

@@ -10,6 +10,7 @@
 
 namespace tactus::arm_control {
 
+using arm::JointMatrix;
 using arm::JointVector;
 
 /// Which part of the arm's inertia a model has.
@@ -63,6 +64,7 @@ class InducedMotion {
     double drive_damping_limit_N_s_per_m = 0.0;    ///< of what that is at the tool; 0: none
     double friction_share = 0.0;                   ///< of the friction that feed-forward takes away
     double friction_velocity_rad_per_s = 0.3;
+    double damping_washout_Hz = 0.0;  ///< below which the dampers do not act (`WashedDamping`); 0: everywhere
   };
 
   /// What the leader is assumed to be.
@@ -81,8 +83,9 @@ class InducedMotion {
   [[nodiscard]] JointVector position() const noexcept { return position_.head(joints()) - slow_position_; }
   [[nodiscard]] JointVector velocity() const noexcept { return velocity_.head(joints()) - slow_velocity_; }
   /// To the next tick, under the displayed torque in N m that acts until then. Real-time safe.
-  void step(const JointVector& displayed, const JointVector& measured_position,
-            const JointVector& measured_velocity) noexcept;
+  /// `left` is the share of the dampers' slow part that the site takes back now (`WashedDamping::Left`).
+  void step(const JointVector& displayed, const JointVector& measured_position, const JointVector& measured_velocity,
+            const JointMatrix& left = {}) noexcept;
   void reset() noexcept;
 
  private:
@@ -92,6 +95,7 @@ class InducedMotion {
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 2 * arm::most, 2 * arm::most>;
   struct Matrices {
     StateMatrix inertia, damping, stiffness;
+    JointMatrix of_site;  ///< of damping, what the site does to the motors
   };
 
   InducedMotion(const Params& params, const Site& site, const Arm& arm, const arm::Chain& chain, Seconds dt);
@@ -118,6 +122,8 @@ class InducedMotion {
   State velocity_;
   JointVector slow_position_;
   JointVector slow_velocity_;
+  double damper_washed_;          ///< of the velocity that dampers do not see, from tick to tick
+  JointVector slow_for_dampers_;  ///< that velocity
 };
 
 }  // namespace tactus::arm_control

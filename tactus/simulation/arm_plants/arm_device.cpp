@@ -13,19 +13,21 @@ ArmDevice::Reading ArmDevice::read(const station::Tick&) noexcept {
 }
 
 void ArmDevice::write(const Joints<station::DeviceCommand>& command) noexcept {
-  const JointVector none = JointVector::Zero(static_cast<Eigen::Index>(told_.size()));
+  const JointVector none = JointVector::Zero(static_cast<Eigen::Index>(reading_.size()));
   ArmCommand acts{.position = none, .velocity = none, .stiffness = none, .damping = none, .torque = none};
-  for (std::size_t i = 0; i < told_.size(); ++i) {
-    if (!told_[i].enabled) continue;
+  Joints<station::DeviceCommand>& told = on_its_way_[oldest_];
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (!told[i].enabled) continue;
     const auto at = static_cast<Eigen::Index>(i);
-    acts.position[at] = told_[i].law.position_m;
-    acts.velocity[at] = told_[i].law.velocity_m_per_s;
-    acts.stiffness[at] = told_[i].law.stiffness_N_per_m;
-    acts.damping[at] = told_[i].law.damping_N_s_per_m;
-    acts.torque[at] = told_[i].force_N;
+    acts.position[at] = told[i].law.position_m;
+    acts.velocity[at] = told[i].law.velocity_m_per_s;
+    acts.stiffness[at] = told[i].law.stiffness_N_per_m;
+    acts.damping[at] = told[i].law.damping_N_s_per_m;
+    acts.torque[at] = told[i].force_N;
   }
   plant_.write(acts);
-  told_ = command;
+  told = command;
+  oldest_ = oldest_ + 1 == on_its_way_.size() ? 0 : oldest_ + 1;
 }
 
 void ArmDevice::touches(const ToolForce& on_tool) noexcept {

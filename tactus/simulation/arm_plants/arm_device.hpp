@@ -3,7 +3,9 @@
 #include <tactus/kernel/station/device.hpp>
 #include <tactus/simulation/arm_plants/arm_plant.hpp>
 
+#include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace tactus::arm_plants {
 
@@ -17,8 +19,12 @@ class ArmDevice final : public station::JointDevice {
   using Reading = Joints<station::DeviceReading>;
 
   /// `limits` are those of each joint, beyond which nobody shall command it.
-  ArmDevice(ArmPlant plant, const Joints<station::DeviceLimits>& limits)
-      : plant_(std::move(plant)), limits_(limits), reading_(limits.size()), told_(limits.size()) {}
+  /// A command acts `extra_delay_ticks` later than that.
+  ArmDevice(ArmPlant plant, const Joints<station::DeviceLimits>& limits, std::size_t extra_delay_ticks = 0)
+      : plant_(std::move(plant)),
+        limits_(limits),
+        reading_(limits.size()),
+        on_its_way_(1 + extra_delay_ticks, Joints<station::DeviceCommand>(limits.size())) {}
 
   [[nodiscard]] Joints<station::DeviceLimits> limits() const override { return limits_; }
   [[nodiscard]] bool simulated() const noexcept override { return true; }
@@ -39,7 +45,8 @@ class ArmDevice final : public station::JointDevice {
   ArmPlant plant_;
   Joints<station::DeviceLimits> limits_;
   Reading reading_;
-  Joints<station::DeviceCommand> told_;  ///< on its way
+  std::vector<Joints<station::DeviceCommand>> on_its_way_;  ///< a ring
+  std::size_t oldest_ = 0;
   station::DeviceHealth health_ = station::DeviceHealth::good;
 };
 

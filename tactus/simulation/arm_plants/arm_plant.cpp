@@ -93,6 +93,9 @@ Check check(const MotorParams& motor) {
   if (!(motor.velocity_scale > 0.0 && std::isfinite(motor.velocity_scale))) {
     return refused(ErrorCode::out_of_bounds, "velocity_scale", "must be positive: 1 where the host's table is right");
   }
+  if (!(motor.torque_scale > 0.0 && std::isfinite(motor.torque_scale))) {
+    return refused(ErrorCode::out_of_bounds, "torque_scale", "must be positive: 1 where the drive's table is right");
+  }
   return {};
 }
 
@@ -299,7 +302,7 @@ void ArmPlant::step(const ToolForce& on_tool) {
     const double wanted = c.torque[i] + c.stiffness[i] * (c.position[i] - e.data->qpos[e.dof(i)]) +
                           c.damping[i] * (c.velocity[i] / motor.velocity_scale - e.data->qvel[e.dof(i)]);
     e.torque[i] = std::clamp(wanted, -limit, limit);
-    e.data->qfrc_applied[e.dof(i)] += e.torque[i];
+    e.data->qfrc_applied[e.dof(i)] += motor.torque_scale * e.torque[i];
     if (motor.play_rad > 0.0) {
       const std::size_t apart = e.dof(i) + 1;
       e.data->qfrc_applied[apart] += flank_torque(motor, e.data->qpos[apart], e.data->qvel[apart]);
