@@ -21,7 +21,7 @@ Result<DescribedArm> described(const ArmParams& params, const std::string& key, 
   const auto refused = [&key](const Error& error) { return Error{error.code, key, describe(error), {}}; };
   auto urdf = urdfs(params.urdf);
   if (!urdf) return refused(urdf.error());
-  const auto read = parse(urdf->text, urdf->file);
+  const auto read = parse(urdf->text, urdf->file, params.tip);
   if (!read) return refused(read.error());
   if (!read->doubtful_limits.empty()) {
     return Error{ErrorCode::inconsistent, key, read->doubtful_limits.front() + ": an arm that moves needs it", {}};
@@ -43,7 +43,15 @@ Result<DescribedArm> described(const ArmParams& params, const std::string& key, 
                            .velocity_step_rad_per_s = from.velocity_step_rad_per_s,
                            .torque_step_N_m = from.torque_step_N_m,
                            .joint_stiffness_N_m_per_rad = from.stiffness_share * params.joint_stiffness_N_m_per_rad,
-                           .joint_damping_N_m_s_per_rad = from.stiffness_share * params.joint_damping_N_m_s_per_rad};
+                           .joint_damping_N_m_s_per_rad = from.stiffness_share * params.joint_damping_N_m_s_per_rad,
+                           .play_rad = from.play_rad};
+  }
+  if (params.assumed_joint_stiffness_N_m_per_rad > 0.0) {
+    found.assumed_joint_stiffness_N_m_per_rad.resize(found.start.size());
+    for (std::size_t i = 0; i < joints; ++i) {
+      found.assumed_joint_stiffness_N_m_per_rad[static_cast<Eigen::Index>(i)] =
+          of_file[i].stiffness_share * params.assumed_joint_stiffness_N_m_per_rad;
+    }
   }
   found.arm.tool_m = arm::Vector3(params.tool.x_m, params.tool.y_m, params.tool.z_m);
   return found;
@@ -163,6 +171,15 @@ Result<DescribedArms> pair_of(const station::ArmPairParams& params, arm_control:
 
 }  // namespace
 
+namespace {
+
+arm::JointVector assumed_stiffness(const DescribedArm& of) {
+  return of.assumed_joint_stiffness_N_m_per_rad.size() > 0 ? of.assumed_joint_stiffness_N_m_per_rad
+                                                           : of.joint_stiffness_N_m_per_rad();
+}
+
+}  // namespace
+
 Result<DescribedArms> describe_arms(const station::ArmTeleoperatorParams& params, const Urdfs& urdfs) {
   const arm_control::Coupling coupling = params.control.follower.coupling;
   if (Check wrong = refuse_method(params.control, coupling)) return *std::move(wrong);
@@ -171,12 +188,14 @@ Result<DescribedArms> describe_arms(const station::ArmTeleoperatorParams& params
   for (const DescribedArm* arm : {&arms->leader, &arms->follower}) {
     if (const auto chain = arm::Chain::make(arm->arm.chain); !chain) return under("arm", chain.error());
   }
-  arms->exact = {.induced = {.chain = arms->leader.arm.chain,
+  arms->exact = {.leader = arms->leader.arm.chain,
+                 .follower = arms->follower.arm.chain,
+                 .induced = {.chain = arms->leader.arm.chain,
                              .tool_m = arms->leader.arm.tool_m,
-                             .joint_stiffness_N_m_per_rad = arms->leader.joint_stiffness_N_m_per_rad(),
+                             .joint_stiffness_N_m_per_rad = assumed_stiffness(arms->leader),
                              .joint_damping_N_m_s_per_rad = arms->leader.joint_damping_N_m_s_per_rad()},
                  .hand = params.control.model.hand,
-                 .follower_joint_stiffness_N_m_per_rad = arms->follower.joint_stiffness_N_m_per_rad()};
+                 .follower_joint_stiffness_N_m_per_rad = assumed_stiffness(arms->follower)};
   return arms;
 }
 

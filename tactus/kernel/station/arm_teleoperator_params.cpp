@@ -2,6 +2,15 @@
 
 namespace tactus::station {
 
+Check refuse_tare(const ArmTeleoperatorParams& params) {
+  if (params.control.tare.cycles == 0) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "control.tare.cycles",
+               .message = std::to_string(params.control.tare.cycles) +
+                          ": only simulated taps have a tare so far; write 0 for motors and for tactus faults",
+               .place = {}};
+}
+
 Check refuse_tool_coupling(const ArmTeleoperatorParams& params, std::string_view what) {
   if (params.control.follower.coupling == arm_control::Coupling::joints) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,

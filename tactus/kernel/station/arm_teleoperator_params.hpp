@@ -3,10 +3,12 @@
 #include <tactus/kernel/arm_control/arm_follower.hpp>
 #include <tactus/kernel/arm_control/arm_leader.hpp>
 #include <tactus/kernel/arm_control/motor_watch.hpp>
+#include <tactus/kernel/arm_control/tare.hpp>
 #include <tactus/kernel/control/safety_gate.hpp>
 #include <tactus/kernel/control/supervision.hpp>
 #include <tactus/kernel/core/parameters.hpp>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -22,6 +24,7 @@ struct ArmJoint {
   double position_step_rad = 0.0;
   double velocity_step_rad_per_s = 0.0;
   double torque_step_N_m = 0.0;
+  double play_rad = 0.0;
   static constexpr auto fields() {
     using J = ArmJoint;
     namespace u = arm::units;
@@ -36,7 +39,9 @@ struct ArmJoint {
                 field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
                       "Step of the velocity that it reports."),
                 field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
-                      "Step of the torque that it reports.")};
+                      "Step of the torque that it reports."),
+                field("play_rad", &J::play_rad, u::radian, between(0.0, 0.1),
+                      "Backlash of the gear, from flank to flank, at the joint; needs an elastic joint.")};
   }
 };
 
@@ -54,8 +59,10 @@ struct ToolPoint {
 /// An arm as its URDF and its file have it. Of joints that slide rad stands for m, and N m for N.
 struct ArmParams {
   std::string urdf;
+  std::string tip;
   ToolPoint tool;
   double joint_stiffness_N_m_per_rad = 0.0;
+  double assumed_joint_stiffness_N_m_per_rad = 0.0;
   double joint_damping_N_m_s_per_rad = 0.0;
   arm_control::EachJoint<ArmJoint> joints;
   static constexpr auto fields() {
@@ -63,9 +70,15 @@ struct ArmParams {
     return List{field("urdf", &A::urdf,
                       "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
                       "the motors, damping and friction rub at them."),
+                field("tip", &A::tip,
+                      "Name of the link at which the arm ends, if the URDF branches or continues, as with the fingers "
+                      "of a gripper, which then count as fixed; empty: the end of its only chain."),
                 field("tool", &A::tool, "The point that the operator holds, or that touches."),
                 field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
                       between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
+                field("assumed_joint_stiffness_N_m_per_rad", &A::assumed_joint_stiffness_N_m_per_rad,
+                      Unit{"N m/rad", "_N_m_per_rad"}, between(0.0, 1e6),
+                      "What models and observers of elastic joints take that stiffness for; 0: for what it is."),
                 field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
                       arm::units::newton_metre_second_per_radian, between(0.0, 100.0),
                       "Damping in parallel with that stiffness."),
@@ -90,20 +103,27 @@ struct ArmPairParams : ArmParams {
 
 struct ArmControlParams : arm_control::ArmLeader::Params {
   arm_control::ArmFollower::Params follower = {};
+  arm_control::Tare::Params tare = {};
   static constexpr auto fields() {
     return joined(arm_control::ArmLeader::Params::fields(),
-                  List{field("follower", &ArmControlParams::follower, "The follower's site.")});
+                  List{field("follower", &ArmControlParams::follower, "The follower's site."),
+                       field("tare", &ArmControlParams::tare,
+                             "With simulated taps alone: what both arms' gravity compensation lacks is found before "
+                             "the operator takes the leader.")});
   }
 };
 
 struct ArmClockParams {
   double rate_Hz = 1000.0;
   double plant_step_s = 1e-4;
+  std::int64_t extra_delay_cycles = 0;
   static constexpr auto fields() {
     return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
                       "Control cycles per second; a command acts from the next control cycle on."),
                 field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
-                      "Step of the simulated arms, rounded so that a control cycle is a whole number of them.")};
+                      "Step of the simulated arms, rounded so that a control cycle is a whole number of them."),
+                field("extra_delay_cycles", &ArmClockParams::extra_delay_cycles, between(0, 20),
+                      "Further control cycles until a command acts on a simulated arm; the sites count with one.")};
   }
 };
 
@@ -189,6 +209,9 @@ struct ArmTeleoperatorParams {
 
 /// Whether the follower is another arm than the leader.
 inline bool differs(const ArmPairParams& params) { return !params.follower.urdf.empty(); }
+
+/// Errors: `inconsistent`, under `control.tare.cycles`, for sites under supervision, which have no tare.
+Check refuse_tare(const ArmTeleoperatorParams& params);
 
 /// Errors: `inconsistent`, under `control.follower.coupling`, for a leader that leads the tool: `what` ("tactus
 /// faults") knows arms that are led joint by joint alone.

@@ -16,6 +16,8 @@ struct DescribedArm {
   std::vector<std::string> joints;  ///< their names, from the base on
   arm::PhysicalArm arm;
   arm::JointVector start;
+  /// What the sites take the stiffness of each transmission for, if that is not what it is; else without rows.
+  arm::JointVector assumed_joint_stiffness_N_m_per_rad = {};
 
   /// Of each joint's transmission; 0 is rigid.
   [[nodiscard]] arm::JointVector joint_stiffness_N_m_per_rad() const;
@@ -24,9 +26,14 @@ struct DescribedArm {
 
 /// The models that the sites of two arms compute with, as far as an experiment draws errors of them.
 struct ArmModelParams {
+  arm::Chain::Params leader;    ///< for gravity compensation and everything else that the leader's site computes
+  arm::Chain::Params follower;  ///< for gravity compensation, observer and wanted motion of the follower's site
   arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
   arm::HandImpedance hand;                                ///< that holds it, for the same
   arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
+  /// What a tare found that gravity compensation lacks (`arm_control::Tare`), N m; no rows: there was none.
+  arm::JointVector leader_lacking_N_m = {};
+  arm::JointVector follower_lacking_N_m = {};
 };
 
 /// Both arms of a teleoperator. The sites compute gravity and friction from these themselves.

@@ -136,6 +136,7 @@ Result<Begun> begin(const ArmTeleoperatorParams& params, const DescribedArms& ar
         .message = "four-channel control is tried in virtual time alone, without supervision: write another method",
         .place = {}};
   }
+  if (Check wrong = refuse_tare(params)) return *std::move(wrong);
   if (Check wrong = refuse_tool_coupling(params, "supervision, of tactus faults and of a rig,")) {
     return *std::move(wrong);
   }

@@ -120,7 +120,9 @@ Result<RealTimeOutcome> run_arms_in_real_time(const experiments::Request& reques
   std::vector<experiments::ArmTappingRun> runs;
   std::vector<report::Figure> figures;
   if (!done->results.empty()) {
-    runs.push_back({settings, experiments::summarise(done->results, taps.reach())});
+    std::vector<experiments::ArmHold> holds;
+    for (std::size_t i = 0; i < taps.holds(); ++i) holds.push_back(taps.hold(i));
+    runs.push_back({settings, experiments::summarise(done->results, taps.reach(), holds)});
     kept.runs.push_back(done->servo);
     figures = experiments::arm_figures(settings, taps, done->first);
   }

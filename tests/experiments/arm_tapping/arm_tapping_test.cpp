@@ -53,6 +53,18 @@ TEST(ArmTapping, AContactRingsWhereASineOfMoreThanATenthOfItsPeakStays) {
   EXPECT_NEAR(ringing.felt_share, 0.3, 1e-9);
 }
 
+TEST(ArmTapping, AContactIsLostForAsLongAsNothingTouchesAfter150Milliseconds) {
+  std::vector<ArmRecord> records = push(0.0);
+  const auto leave = [&records](int from, int to) {
+    for (int k = from; k < to; ++k) records[static_cast<std::size_t>(k)].contact_N = 0.0;
+  };
+  leave(150, 240);  // before
+  EXPECT_EQ(judge_arm_contact(records, 100, 1e-3).lost_s, 0.0);
+  leave(400, 430);
+  leave(500, 570);
+  EXPECT_NEAR(judge_arm_contact(records, 100, 1e-3).lost_s, 0.070, 1e-9);
+}
+
 TEST(ArmTapping, TapsSettleAtASmallGainAndNotAtALargeOne) {
   ArmTappingParams params = bare(ArmMethod::position_force);
   params.control.force_gain = 0.5;

@@ -129,6 +129,24 @@ Result<double> tool_scale(const ArmPairSetup& setup) {
                .place = {}};
 }
 
+/// Refuses an arm whose motors cannot bear what it weighs where it starts.
+Check check_weight(const DescribedArm& of, const char* key) {
+  const JointVector weight = arm::Chain::make(of.arm.chain)->gravity_torque(of.start);
+  for (Eigen::Index i = 0; i < weight.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double most_N_m = of.arm.chain.joints[at].limits.effort_N_m;
+    if (std::fabs(weight[i]) <= most_N_m) continue;
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = key,
+                 .message = "joint '" + of.joints[at] + "' bears " + rounded_number(std::fabs(weight[i])) +
+                            " N m of the arm's own weight where it starts, beyond its effort limit of " +
+                            rounded_number(most_N_m) + " N m in " + of.urdf +
+                            ": correct effort or the masses there, or start elsewhere (start_rad)",
+                 .place = {}};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
@@ -142,6 +160,8 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const urdf:
   for (DescribedArm* arm : {&setup.leader, &setup.follower}) {
     arm->arm.step_s = 1.0 / (params.servo.rate_Hz * steps_in_a_tick(params.servo));
   }
+  if (Check wrong = check_weight(setup.leader, "arm.urdf")) return *std::move(wrong);
+  if (Check wrong = check_weight(setup.follower, "arm.follower.urdf")) return *std::move(wrong);
   if (Check wrong = take_pose(setup)) return *std::move(wrong);
   if (!leads_joints(params)) {
     setup.tool_scale = params.control.follower.tool_scale;
@@ -187,15 +207,18 @@ Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const A
   control.model.hand = model_params.hand;
   const Joints<control::SafetyGate::Params> gates(joints, arm_control::widest_gate());
   const Joints<control::SafetyGate::Params> follower_gates(follows.chain.joints.size(), arm_control::widest_gate());
-  auto leader_site = arm_control::leader_site(
-      control,
-      {.carried = leads.chain, .induced = model_params.induced, .gains = params.control.follower.gains.of(joints)},
-      gates, tick);
+  auto leader_site = arm_control::leader_site(control,
+                                              {.carried = model_params.leader,
+                                               .induced = model_params.induced,
+                                               .gains = params.control.follower.gains.of(joints),
+                                               .lacking_N_m = model_params.leader_lacking_N_m},
+                                              gates, tick);
   if (!leader_site) return under("control", leader_site.error());
-  arm_control::ArmFollower::Arm known{.chain = follows.chain,
+  arm_control::ArmFollower::Arm known{.chain = model_params.follower,
                                       .tool_m = follows.tool_m,
                                       .joint_stiffness_N_m_per_rad = model_params.follower_joint_stiffness_N_m_per_rad,
-                                      .passivity = {params.control.passivity, params.control.force_gain}};
+                                      .passivity = {params.control.passivity, params.control.force_gain},
+                                      .lacking_N_m = model_params.follower_lacking_N_m};
   if (params.control.method == arm_control::ArmMethod::four_channel) {
     known.four_channel =
         arm_control::FourChannelCoupling{.params = params.control.four_channel, .gain = params.control.force_gain};
@@ -212,9 +235,10 @@ Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const A
   return station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
 }
 
-Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m) {
+Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m,
+                              const ArmPlantErrors& errors) {
   const ArmTappingParams& params = setup.params;
-  const ArmPlant::Params &leads = setup.leader.arm, &follows = setup.follower.arm;
+  const auto [leads, follows] = plants_of(setup, errors);
   const Seconds tick{1.0 / params.servo.rate_Hz};
   ArmPlant::Params held = leads;
   held.carried_kg = params.person.hand.mass_kg;
@@ -234,8 +258,10 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& m
   if (!leader_chain) return under("arm", leader_chain.error());
   std::optional<arm::Chain> other_follower;
   if (station::differs(params.arm)) other_follower = *arm::Chain::make(follows.chain);
-  return ArmPair(setup, *leader_chain, {*std::move(leader), no_limits}, {*std::move(follower), no_follower_limits},
-                 other_follower, *std::move(person), *std::move(sites), wall_m, *contact);
+  const auto delay = static_cast<std::size_t>(params.servo.extra_delay_cycles);
+  return ArmPair(setup, *leader_chain, {*std::move(leader), no_limits, delay},
+                 {*std::move(follower), no_follower_limits, delay}, other_follower, *std::move(person),
+                 *std::move(sites), wall_m, *contact);
 }
 
 Vector3 ArmPair::led_to_m(const JointVector& leader) const {
@@ -306,6 +332,11 @@ ArmSnapshot ArmPair::snapshot() const {
                                   : Vector3(force_nearest_to(at_leader, told) / tool_scale_),
           .induced_m = at_leader * induced,
           .command_m = led_to_m(commanded)};
+}
+
+double ArmPair::farthest_m() const {
+  return std::max((leader_.plant().tool().position_m - leader_began_m_).norm(),
+                  (follower_.plant().tool().position_m - follower_began_m_).norm());
 }
 
 void ArmPair::exchange(ArmPair& made, const Parts& parts) noexcept {

@@ -39,6 +39,26 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const urdf:
 /// The sites of a tap, without supervision, behind the widest gates. Errors: those of the controllers, under `control`.
 Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmModelParams& model_params);
 
+/// In what the simulated arms differ from `ArmPairSetup`, for a tap.
+struct ArmPlantErrors {
+  arm::JointVector leader_torque_scale = {};  ///< `arm::MotorParams::torque_scale`; no rows: 1
+  arm::JointVector follower_torque_scale = {};
+  double leader_payload_kg = 0.0;  ///< at the tool, with its weight
+  double follower_payload_kg = 0.0;
+};
+/// An arm with a mass more at its tool.
+arm::Chain::Params with_payload(arm::Chain::Params chain, double payload_kg, const arm::Vector3& tool_m);
+/// The simulated arms of a setup with these errors.
+struct ArmPlants {
+  arm::PhysicalArm leader;
+  arm::PhysicalArm follower;
+};
+ArmPlants plants_of(const ArmPairSetup& setup, const ArmPlantErrors& errors);
+
+/// Moves both arms by the tare of `control.tare`, held by nobody, and leaves in `model_params` what their models of
+/// gravity lack; nothing without cycles. Errors: those of `Tare::make` and of the plants.
+Check tare_arms(const ArmPairSetup& setup, const ArmPlantErrors& errors, ArmModelParams& model_params);
+
 /// What both tools did at a tick.
 struct ArmRecord {
   double contact_N = 0.0;  ///< of the wall on the follower's tool, mean of the tick
@@ -87,7 +107,8 @@ struct ArmSnapshot {
 class ArmPair {
  public:
   /// The wall lies `wall_m` outward from where the follower's tool begins.
-  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m);
+  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m,
+                              const ArmPlantErrors& errors = {});
 
   /// One tick, with where the operator wants the follower's tool now and a tick later, from where it began; the hand
   /// goes that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with
@@ -102,6 +123,10 @@ class ArmPair {
   [[nodiscard]] const station::JointBarePair::Output& latest() const noexcept { return latest_; }
   [[nodiscard]] const station::JointBarePair& sites() const noexcept { return sites_; }
   [[nodiscard]] ArmSnapshot snapshot() const;
+  /// Of the hand's spring and damper on the leader's tool, along the axes of its base.
+  [[nodiscard]] arm::Vector3 hand_force_N() const { return person_.force(leader_.plant().tool(), 0.0).force_N; }
+  /// How far the leader's or the follower's tool is from where it began, whichever is farther.
+  [[nodiscard]] double farthest_m() const;
 
   /// What `exchange` takes over.
   struct Parts {

@@ -14,7 +14,7 @@ constexpr double farthest_m = 0.3;          ///< from where it began, for a foll
 }  // namespace
 
 Result<ArmTapRun> ArmTapRun::make(const ArmPairSetup& setup, const ArmTap& tap) {
-  auto pair = ArmPair::make(setup, tap.model_params, tap.wall_m);
+  auto pair = ArmPair::make(setup, tap.model_params, tap.wall_m, tap.plant_errors);
   if (!pair) return pair.error();
   return ArmTapRun(setup, tap, *std::move(pair));
 }

@@ -4,6 +4,7 @@
 #include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
 #include <tactus/simulation/experiments/contact_metrics.hpp>
 #include <tactus/simulation/experiments/draws.hpp>
+#include <tactus/simulation/teleoperator/parallel.hpp>
 #include <tactus/simulation/teleoperator/quantile.hpp>
 
 #include <algorithm>
@@ -19,6 +20,7 @@ constexpr double rest_s = 0.1;
 constexpr double given_time_s = 0.15;
 constexpr double window_s = 0.05;
 constexpr double end_s = 0.1;
+constexpr double far_below_m = -10.0;  ///< of a surface that nothing touches
 
 std::vector<double> transient(std::span<const ArmRecord> records, double ArmRecord::*force, double tick_s) {
   std::vector<double> forces;
@@ -32,15 +34,17 @@ double drawn(double value, double error, signal::Random& random) {
   return value * (1.0 + random.uniform(-error, error));
 }
 
+/// Mass and inertia.
+void scale_body(arm::Body& body, double share) {
+  for (double arm::Body::*part : {&arm::Body::mass_kg, &arm::Body::xx_kg_m2, &arm::Body::yy_kg_m2, &arm::Body::zz_kg_m2,
+                                  &arm::Body::xy_kg_m2, &arm::Body::xz_kg_m2, &arm::Body::yz_kg_m2}) {
+    body.*part *= share;
+  }
+}
+
 void draw_errors(ArmTap& tap, double error, signal::Random& random) {
   for (arm::JointParams& joint : tap.model_params.induced.chain.joints) {
-    const double mass = drawn(1.0, error, random);
-    arm::Body& body = joint.body;
-    for (double arm::Body::*part :
-         {&arm::Body::mass_kg, &arm::Body::xx_kg_m2, &arm::Body::yy_kg_m2, &arm::Body::zz_kg_m2, &arm::Body::xy_kg_m2,
-          &arm::Body::xz_kg_m2, &arm::Body::yz_kg_m2}) {
-      body.*part *= mass;
-    }
+    scale_body(joint.body, drawn(1.0, error, random));
     joint.drive.armature_kg_m2 = drawn(joint.drive.armature_kg_m2, error, random);
     joint.friction.coulomb_N_m = drawn(joint.friction.coulomb_N_m, error, random);
     joint.friction.viscous_N_m_s_per_rad = drawn(joint.friction.viscous_N_m_s_per_rad, error, random);
@@ -56,6 +60,26 @@ void draw_errors(ArmTap& tap, double error, signal::Random& random) {
   hand.mass_kg = drawn(hand.mass_kg, error, random);
   hand.stiffness_N_per_m = drawn(hand.stiffness_N_per_m, error, random);
   hand.damping_N_s_per_m = drawn(hand.damping_N_s_per_m, error, random);
+}
+
+/// What a site believes of an arm, and what that arm is.
+void draw_site_errors(const ArmModelErrors& errors, const arm::Vector3& tool_m, signal::Random& random,
+                      arm::Chain::Params& believed, arm::JointVector& torque_scale, double& payload_kg) {
+  const auto joints = static_cast<Eigen::Index>(believed.joints.size());
+  torque_scale.resize(joints);
+  for (Eigen::Index i = 0; i < joints; ++i) {
+    arm::JointParams& joint = believed.joints[static_cast<std::size_t>(i)];
+    scale_body(joint.body, drawn(1.0, errors.mass, random));
+    for (double arm::Body::*centre : {&arm::Body::centre_x_m, &arm::Body::centre_y_m, &arm::Body::centre_z_m}) {
+      joint.body.*centre += random.uniform(-errors.centre_m, errors.centre_m);
+    }
+    joint.friction.coulomb_N_m = drawn(joint.friction.coulomb_N_m, errors.friction, random);
+    joint.friction.viscous_N_m_s_per_rad = drawn(joint.friction.viscous_N_m_s_per_rad, errors.friction, random);
+    torque_scale[i] = drawn(1.0, errors.torque_constant, random);
+  }
+  const double lacking_kg = random.uniform(-errors.payload_kg, errors.payload_kg);
+  payload_kg = std::max(0.0, lacking_kg);
+  believed = with_payload(believed, std::max(0.0, -lacking_kg), tool_m);
 }
 
 }  // namespace
@@ -78,6 +102,11 @@ ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t fir
   for (std::size_t i = first_touch + ticks_in(given_time_s, tick_s); i + window <= contact.size(); ++i) {
     if (signal::root_mean_square(of_contact.subspan(i, window)) > most_N) found.rings = true;
   }
+  std::size_t without = 0;
+  for (std::size_t i = ticks_in(given_time_s, tick_s); i < after.size(); ++i) {
+    without = after[i].contact_N > 0.0 ? 0 : without + 1;
+    found.lost_s = std::max(found.lost_s, static_cast<double>(without) * tick_s);
+  }
   return found;
 }
 
@@ -85,7 +114,8 @@ ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmCo
   return {.contact = contact,
           .ran_away =
               contact.peak_N > 1.6 * without_display.peak_N + 1.0 || contact.steady_N > 2.0 * without_display.steady_N,
-          .diverged = diverged};
+          .diverged = diverged,
+          .rings_at_gain_0 = without_display.rings};
 }
 
 Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesystem::path& folder) {
@@ -116,10 +146,28 @@ Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const urdf::Urdfs&
                .wall_m = -depth_m,
                .model_params = taps.setup_.exact};
     draw_errors(tap, task.model_error, draw);
+    if (task.errors.any()) {
+      ArmPlantErrors& plants = tap.plant_errors;
+      draw_site_errors(task.errors, taps.setup_.leader.arm.tool_m, draw, tap.model_params.leader,
+                       plants.leader_torque_scale, plants.leader_payload_kg);
+      draw_site_errors(task.errors, taps.setup_.follower.arm.tool_m, draw, tap.model_params.follower,
+                       plants.follower_torque_scale, plants.follower_payload_kg);
+    }
     taps.taps_.push_back(std::move(tap));
   }
+  std::vector<Check> untared(taps.taps_.size());
+  simulation::for_each_in_parallel(
+      taps.taps_.size(),
+      [&](std::size_t i) {
+        untared[i] = tare_arms(taps.setup_, taps.taps_[i].plant_errors, taps.taps_[i].model_params);
+      },
+      [](double) {});
+  for (Check& wrong : untared) {
+    if (wrong) return *std::move(wrong);
+  }
   const ArmTap& first = taps.taps_.front();
-  if (const auto made = ArmPair::make(taps.setup_, first.model_params, first.wall_m); !made) return made.error();
+  if (const auto made = ArmPair::make(taps.setup_, first.model_params, first.wall_m, first.plant_errors); !made)
+    return made.error();
   return taps;
 }
 
@@ -151,11 +199,29 @@ ArmTapResult ArmTaps::run_at(double gain, std::size_t tap, const ArmContact& wit
   return judge_arm_tap(at_gain.contact, at_gain.diverged, without_display);
 }
 
+std::size_t ArmTaps::holds() const {
+  constexpr std::size_t most = 4;
+  return setup_.params.task.errors.any() ? std::min(most, taps_.size()) : 1;
+}
+
+ArmHold ArmTaps::hold(std::size_t tap) const {
+  ArmPair pair = *ArmPair::make(setup_, taps_[tap].model_params, far_below_m, taps_[tap].plant_errors);
+  ArmHold found;
+  std::vector<double> forces_N;
+  const arm::Vector3 still = arm::Vector3::Zero();
+  for (std::size_t k = 0; k < ticks_in(hold_s, pair.tick_s()); ++k) {
+    pair.step(still, still);
+    forces_N.push_back(pair.hand_force_N().norm());
+    found.drift_m = std::max(found.drift_m, pair.farthest_m());
+  }
+  found.force_N = signal::root_mean_square(forces_N);
+  return found;
+}
+
 ArmReach ArmTaps::reach() const {
-  constexpr double far_below_m = -10.0;
   const mechanics::MinimumJerk reach{.start_m = 0.0, .end_m = 0.2, .start_time_s = rest_s, .duration_s = 0.75};
   const ArmTap& tap = taps_.front();
-  ArmPair pair = *ArmPair::make(setup_, tap.model_params, far_below_m);
+  ArmPair pair = *ArmPair::make(setup_, tap.model_params, far_below_m, tap.plant_errors);
   ArmReach found;
   std::vector<double> forces_N, false_forces_N;
   for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {
@@ -174,7 +240,15 @@ ArmReach ArmTaps::reach() const {
   return found;
 }
 
-ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReach& reach) {
+ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReach& reach,
+                            const std::vector<ArmHold>& held) {
+  ArmHold hold;
+  for (const ArmHold& one : held) {
+    hold.force_N = std::max(hold.force_N, one.force_N);
+    hold.drift_m = std::max(hold.drift_m, one.drift_m);
+  }
+  double longest_lost_s = 0.0;
+  for (const ArmTapResult& tap : taps) longest_lost_s = std::max(longest_lost_s, tap.contact.lost_s);
   const auto share = [&](auto&& holds) {
     return static_cast<double>(std::count_if(taps.begin(), taps.end(), holds)) / static_cast<double>(taps.size());
   };
@@ -191,6 +265,11 @@ ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReac
           .steady_force_N = median(&ArmContact::steady_N),
           .residual_rms_N = median(&ArmContact::residual_N),
           .felt_share = median(&ArmContact::felt_share),
+          .never_touched_fraction = share([](const ArmTapResult& tap) { return !tap.contact.touched; }),
+          .rings_at_gain_0_fraction = share([](const ArmTapResult& tap) { return tap.rings_at_gain_0; }),
+          .lost_fraction = share([](const ArmTapResult& tap) { return tap.contact.lost_s > most_lost_s; }),
+          .longest_lost_s = longest_lost_s,
+          .hold = hold,
           .reach = reach};
 }
 

@@ -16,6 +16,7 @@ struct ArmTap {
   mechanics::MinimumJerk path;  ///< of the follower's tool, outward from where it began
   double wall_m = 0.0;
   ArmModelParams model_params;
+  ArmPlantErrors plant_errors = {};
 };
 
 /// A tap as it went.
@@ -38,6 +39,7 @@ struct ArmContact {
   double steady_N = 0.0;    ///< mean of the last 100 ms
   double residual_N = 0.0;  ///< above 15 Hz, RMS over the last 100 ms
   double felt_share = 0.0;  ///< of the contact force above 15 Hz, RMS, that the hand's spring and damper feel
+  double lost_s = 0.0;      ///< longest time without contact that begins 150 ms after the first touch or later
 };
 
 /// Judges a tap whose first touch was at record `first_touch`.
@@ -48,6 +50,7 @@ struct ArmTapResult {
   /// Presses 1.6 times as hard at its peak, 1 N more, or twice as hard in the end, as at gain 0.
   bool ran_away = false;
   bool diverged = false;
+  bool rings_at_gain_0 = false;  ///< the same tap without display, whose ringing no gain is the cause of
   [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
 };
 
@@ -61,6 +64,19 @@ struct ArmReach {
   double false_force_N = 0.0;  ///< what the follower sends, as a force at the leader's tool (`ArmSnapshot`), RMS
   double drift_m = 0.0;        ///< farthest that cancellation moves the command from where the leader is
 };
+
+/// An operator who holds the leader still for `hold_s`, in the air.
+struct ArmHold {
+  double force_N = 0.0;  ///< of the hand's spring and damper, RMS
+  double drift_m = 0.0;  ///< farthest of either tool from where it began
+};
+inline constexpr double hold_s = 10.0;
+
+/// What an operator accepts: beyond it the verdict names the figure.
+inline constexpr double most_lost_s = 0.05;
+inline constexpr double most_hold_N = 1.0, most_hold_m = 0.003;
+/// So large a share of the taps settles in a combination that settles; so large a share may lose contact.
+inline constexpr double settles_share = 0.95;
 
 /// The ensemble of one combination.
 class ArmTaps {
@@ -80,6 +96,10 @@ class ArmTaps {
   /// Runs a tap at this gain.
   ArmTapResult run_at(double gain, std::size_t tap, const ArmContact& without_display, ArmTrace* trace = nullptr) const;
   [[nodiscard]] ArmReach reach() const;
+  /// How many taps `hold` is tried with: one if no errors are drawn that it could show, else up to four.
+  [[nodiscard]] std::size_t holds() const;
+  /// With the errors of a tap.
+  [[nodiscard]] ArmHold hold(std::size_t tap) const;
 
  private:
   struct Contact {
@@ -102,8 +122,14 @@ struct ArmTappingMetrics {
   double steady_force_N = 0.0;
   double residual_rms_N = 0.0;
   double felt_share = 0.0;
-  ArmReach reach;
+  double never_touched_fraction = 0.0;
+  double rings_at_gain_0_fraction = 0.0;
+  double lost_fraction = 0.0;   ///< of the taps that lose contact for longer than `most_lost_s`
+  double longest_lost_s = 0.0;  ///< of all taps
+  ArmHold hold = {};            ///< the largest of each
+  ArmReach reach = {};
 };
-ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReach& reach);
+ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReach& reach,
+                            const std::vector<ArmHold>& held);
 
 }  // namespace tactus::experiments

@@ -26,18 +26,23 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
 
   // One list of all taps and reaches of all combinations, so that the last one keeps no core waiting.
   struct Job {
-    std::size_t run, tap;  ///< a tap beyond the last is the reach
+    std::size_t run, tap;  ///< a tap beyond the last is the reach, one beyond that a hold
   };
   struct Results {
     std::vector<ArmTapResult> taps;
     ArmReach reach;
+    std::vector<ArmHold> holds;
     ArmTrace trace;  ///< of the first tap
   };
   std::vector<Job> jobs;
   std::vector<Results> results;
   for (const auto& one : cases->all) {
-    for (std::size_t tap = 0; tap <= one.prepared.size(); ++tap) jobs.push_back({results.size(), tap});
-    results.push_back({.taps = std::vector<ArmTapResult>(one.prepared.size()), .reach = {}, .trace = {}});
+    const std::size_t holds = one.prepared.holds();
+    for (std::size_t tap = 0; tap <= one.prepared.size() + holds; ++tap) jobs.push_back({results.size(), tap});
+    results.push_back({.taps = std::vector<ArmTapResult>(one.prepared.size()),
+                       .reach = {},
+                       .holds = std::vector<ArmHold>(holds),
+                       .trace = {}});
   }
   simulation::for_each_in_parallel(
       jobs.size(),
@@ -47,6 +52,8 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
         Results& found = results[run];
         if (tap == taps.size()) {
           found.reach = taps.reach();
+        } else if (tap > taps.size()) {
+          found.holds[tap - taps.size() - 1] = taps.hold(tap - taps.size() - 1);
         } else {
           found.taps[tap] = taps.run(tap, tap == 0 ? &found.trace : nullptr);
         }
@@ -57,7 +64,7 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
   std::vector<report::Figure> figures;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& [settings, taps] = cases->all[i];
-    runs.push_back({settings, summarise(results[i].taps, results[i].reach)});
+    runs.push_back({settings, summarise(results[i].taps, results[i].reach, results[i].holds)});
     std::vector<report::Figure> of_run = arm_figures(settings, taps, results[i].trace);
     std::move(of_run.begin(), of_run.end(), std::back_inserter(figures));
   }

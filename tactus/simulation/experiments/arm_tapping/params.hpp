@@ -98,6 +98,33 @@ constexpr auto enumerators(TapDirection) {
                     Enumerator{TapDirection::along_y, "along-y"}};
 }
 
+/// Errors of what both sites compute gravity, external torque and wanted motion with, and of their drives. Each tap
+/// draws its own for each joint of each arm, evenly from minus to plus these. Those of the model of induced motion are
+/// `ArmTappingTask::model_error`.
+struct ArmModelErrors {
+  double mass = 0.0;
+  double centre_m = 0.0;
+  double friction = 0.0;
+  double torque_constant = 0.0;
+  double payload_kg = 0.0;
+  static constexpr auto fields() {
+    using E = ArmModelErrors;
+    return List{
+        field("mass", &E::mass, units::none, between(0.0, 0.5), "Share of the mass and the inertia of each link."),
+        field("centre_m", &E::centre_m, units::metre, between(0.0, 0.1),
+              "Of the centre of mass of each link, along each axis."),
+        field("friction", &E::friction, units::none, between(0.0, 1.0),
+              "Share of each joint's Coulomb and viscous friction."),
+        field("torque_constant", &E::torque_constant, units::none, between(0.0, 0.5),
+              "Share by which each motor gives another torque than its drive assumes."),
+        field("payload_kg", &E::payload_kg, units::kilogram, between(0.0, 10.0),
+              "Mass at each tool: the arm has it and no model does, or, below zero, the models have it alone.")};
+  }
+  [[nodiscard]] bool any() const noexcept {
+    return mass > 0.0 || centre_m > 0.0 || friction > 0.0 || torque_constant > 0.0 || payload_kg > 0.0;
+  }
+};
+
 /// The taps, each with a speed, a depth and errors of the model of its own.
 struct ArmTappingTask {
   ArmTappingKind kind = ArmTappingKind::arm_tapping;
@@ -111,6 +138,7 @@ struct ArmTappingTask {
   double deepest_m = 0.012;
   double observation_s = 0.6;
   double model_error = 0.2;
+  ArmModelErrors errors;
   static constexpr auto fields() {
     using T = ArmTappingTask;
     return List{
@@ -131,10 +159,10 @@ struct ArmTappingTask {
         field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
         field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
               "How long a tap is observed from first touch, while the operator keeps pressing."),
-        field(
-            "model_error", &T::model_error, units::none, between(0.0, 0.5),
-            "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
-            "friction of each joint, mass, stiffness and damping of the hand) evenly from minus to plus this share.")};
+        field("model_error", &T::model_error, units::none, between(0.0, 0.5),
+              "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
+              "friction of each joint, mass, stiffness and damping of the hand) evenly from minus to plus this share."),
+        field("errors", &T::errors, "Errors of everything else that the sites compute with, drawn for each tap.")};
   }
 };
 

@@ -2,6 +2,7 @@
 #include <tactus/simulation/experiments/arm_tapping/presentation.hpp>
 #include <tactus/simulation/experiments/presentation.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -53,23 +54,30 @@ report::Table arm_table(const std::vector<ArmTappingRun>& runs) {
                                        {"settled", "%"},
                                        {"ring", "%"},
                                        {"run away", "%"},
+                                       {"never touch", "%"},
+                                       {"ring at gain 0", "%"},
+                                       {"contact lost", "ms"},
                                        {"peak", "N"},
                                        {"steady", "N"},
                                        {"felt", "%"},
                                        {"lag", "mm"},
                                        {"effort", "N"},
                                        {"false force", "N"},
-                                       {"drift", "mm"}},
+                                       {"drift", "mm"},
+                                       {"hold", "N"},
+                                       {"hold drift", "mm"}},
                                       std::string(arm_tapping_title));
   for (const ArmTappingRun& run : runs) {
     const ArmTappingMetrics& m = run.metrics;
     add_row(table, run.settings,
             {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
              report::number(100.0 * m.rings_fraction, 3), report::number(100.0 * m.ran_away_fraction, 3),
-             report::number(m.peak_force_N, 3), report::number(m.steady_force_N, 3),
-             report::number(100.0 * m.felt_share, 3), report::number(1e3 * m.reach.lag_m, 3),
-             report::number(m.reach.effort_N, 3), report::number(m.reach.false_force_N, 2),
-             report::number(1e3 * m.reach.drift_m, 2)});
+             report::number(100.0 * m.never_touched_fraction, 3), report::number(100.0 * m.rings_at_gain_0_fraction, 3),
+             report::number(1e3 * m.longest_lost_s, 3), report::number(m.peak_force_N, 3),
+             report::number(m.steady_force_N, 3), report::number(100.0 * m.felt_share, 3),
+             report::number(1e3 * m.reach.lag_m, 3), report::number(m.reach.effort_N, 3),
+             report::number(m.reach.false_force_N, 2), report::number(1e3 * m.reach.drift_m, 2),
+             report::number(m.hold.force_N, 2), report::number(1e3 * m.hold.drift_m, 2)});
   }
   return table;
 }
@@ -81,6 +89,10 @@ std::string arm_json(const Request& request, const std::vector<ArmTappingRun>& r
                          {"settled_fraction", m.settled_fraction},
                          {"rings_fraction", m.rings_fraction},
                          {"ran_away_fraction", m.ran_away_fraction},
+                         {"never_touched_fraction", m.never_touched_fraction},
+                         {"rings_at_gain_0_fraction", m.rings_at_gain_0_fraction},
+                         {"contact_lost_fraction", m.lost_fraction},
+                         {"longest_contact_lost_s", m.longest_lost_s},
                          {"peak_force_N", m.peak_force_N},
                          {"steady_force_N", m.steady_force_N},
                          {"residual_rms_N", m.residual_rms_N},
@@ -88,27 +100,71 @@ std::string arm_json(const Request& request, const std::vector<ArmTappingRun>& r
                          {"reach_lag_m", m.reach.lag_m},
                          {"reach_effort_N", m.reach.effort_N},
                          {"reach_false_force_N", m.reach.false_force_N},
-                         {"reach_drift_m", m.reach.drift_m}});
+                         {"reach_drift_m", m.reach.drift_m},
+                         {"hold_force_N", m.hold.force_N},
+                         {"hold_drift_m", m.hold.drift_m}});
   });
 }
 
+namespace {
+
+std::string of_all(const ArmTappingMetrics& m, double share) {
+  return std::to_string(std::lround(share * static_cast<double>(m.taps))) + " of " + std::to_string(m.taps) +
+         (m.taps == 1 ? " tap" : " taps");
+}
+
+/// The first thing that an operator would not put up with, or nothing: whether taps settle comes first, and why not.
+std::string first_failure(const ArmTappingMetrics& m) {
+  constexpr double may_fail = 1.0 - settles_share;
+  if (m.settled_fraction < settles_share) {
+    if (m.never_touched_fraction > may_fail) {
+      return of_all(m, m.never_touched_fraction) + " never touched the surface";
+    }
+    if (m.rings_at_gain_0_fraction > may_fail) {
+      return of_all(m, m.rings_at_gain_0_fraction) + " already ring at gain 0";
+    }
+    return of_all(m, std::max(m.rings_fraction, m.ran_away_fraction)) +
+           (m.rings_fraction >= m.ran_away_fraction ? " ring" : " run away");
+  }
+  if (m.lost_fraction > may_fail) {
+    return "contact is lost for up to " + report::number(1e3 * m.longest_lost_s, 2) + " ms (at most " +
+           report::number(1e3 * most_lost_s, 2) + ") in " + of_all(m, m.lost_fraction);
+  }
+  if (m.hold.force_N > most_hold_N) {
+    return "at rest the hand bears " + report::number(m.hold.force_N, 2) + " N (at most " +
+           report::number(most_hold_N, 2) + ")";
+  }
+  if (m.hold.drift_m > most_hold_m) {
+    return "at rest a tool drifts by " + report::number(1e3 * m.hold.drift_m, 2) + " mm (at most " +
+           report::number(1e3 * most_hold_m, 2) + ")";
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string arm_verdict(const std::vector<ArmTappingRun>& runs) {
   if (runs.empty()) return "No tap came to its end.";
-  constexpr double settles = 0.95;  // so large a share of the taps
-  const auto of_all = [](const ArmTappingMetrics& m, double share) {
-    return std::to_string(std::lround(share * static_cast<double>(m.taps))) + " of " + std::to_string(m.taps);
-  };
   if (runs.size() == 1) {
     const ArmTappingMetrics& m = runs.front().metrics;
-    return (m.settled_fraction >= settles ? "Settled: " : "Not settled: ") + of_all(m, m.settled_fraction) +
-           (m.taps == 1 ? " tap" : " taps") + " settled.";
+    const std::string failure = first_failure(m);
+    return (m.settled_fraction >= settles_share ? "Settled: " : "Not settled: ") + of_all(m, m.settled_fraction) +
+           " settled" + (failure.empty() ? "." : "; " + failure + ".");
   }
-  std::vector<std::string> failures;
+  std::vector<std::string> failures, others;
   for (const ArmTappingRun& run : runs) {
-    if (run.metrics.settled_fraction >= settles) continue;
-    failures.push_back(settings_caption(run.settings) + " (" + of_all(run.metrics, run.metrics.settled_fraction) + ")");
+    const std::string failure = first_failure(run.metrics);
+    if (failure.empty()) continue;
+    (run.metrics.settled_fraction < settles_share ? failures : others)
+        .push_back(settings_caption(run.settings) + " (" + failure + ")");
   }
-  return settled_combinations(runs.size(), failures);
+  std::string text = settled_combinations(runs.size(), failures);
+  constexpr std::size_t most = 3;  // that are named
+  for (std::size_t i = 0; i < std::min(most, others.size()); ++i) {
+    text += (i == 0 ? " Settled, but: " : "; ") + others[i];
+  }
+  if (others.size() > most) text += " and " + std::to_string(others.size() - most) + " more";
+  return others.empty() ? text : text + ".";
 }
 
 report::Page arm_page(const Request& request, const std::string& verdict, const report::Table& table,
@@ -127,6 +183,10 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
        {"run away",
         "The peak exceeds 1.6 times that of the same tap at gain 0 by more than 1 N, the force in the end twice that, "
         "or a tool left its place by 300 mm."},
+       {"never touch", "Share of the taps in which the follower's tool never met the surface."},
+       {"ring at gain 0",
+        "Share of the taps that ring without any displayed force, which no force gain is the cause of."},
+       {"contact lost", "Longest time without contact after 150 ms from first touch, of all taps; 50 ms at most."},
        {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
        {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
        {"lag",
@@ -135,7 +195,11 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
         "leader leads it."},
        {"effort", "Force of the hand's spring and damper along that reach, RMS."},
        {"false force", "Force that the follower sends in it although nothing is touched, at the leader's tool, RMS."},
-       {"drift", "Farthest in it of the command from where the leader is, by cancellation."}});
+       {"drift", "Farthest in it of the command from where the leader is, by cancellation."},
+       {"hold, hold drift",
+        "The operator holds still for 10 s in the air: force of the hand's spring and damper, RMS, 1 N at most, and "
+        "the "
+        "farthest of either tool from where it began, 3 mm at most; the largest of up to four draws of the errors."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }
