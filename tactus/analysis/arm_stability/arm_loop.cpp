@@ -189,6 +189,13 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmM
   const auto& control = params.control;
   if (Check refused = refuse_what_is_not_linear(control)) return *std::move(refused);
   if (Check refused = station::refuse_tool_coupling(params, "tactus stability")) return *std::move(refused);
+  if (params.servo.extra_delay_cycles > 0) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "servo.extra_delay_cycles",
+                 .message = std::to_string(params.servo.extra_delay_cycles) +
+                            ": the linear loop of tactus stability has no further delay of the drives; write 0",
+                 .place = {}};
+  }
   const auto wall = linear_wall(params.wall, linearisation.preload_N);
   if (!wall) return wall.error();
   const auto chain = arm::Chain::make(setup.leader.arm.chain);

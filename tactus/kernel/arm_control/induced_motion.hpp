@@ -83,9 +83,9 @@ class InducedMotion {
   [[nodiscard]] JointVector position() const noexcept { return position_.head(joints()) - slow_position_; }
   [[nodiscard]] JointVector velocity() const noexcept { return velocity_.head(joints()) - slow_velocity_; }
   /// To the next tick, under the displayed torque in N m that acts until then. Real-time safe.
-  /// `left` is the share of the dampers' slow part that the site takes back now (`WashedDamping::Left`).
+  /// `left_out` is L of `WashedDamping::left`: which part of what the dampers do to slow motion the site takes away.
   void step(const JointVector& displayed, const JointVector& measured_position, const JointVector& measured_velocity,
-            const JointMatrix& left = {}) noexcept;
+            const JointMatrix& left_out = {}) noexcept;
   void reset() noexcept;
 
  private:

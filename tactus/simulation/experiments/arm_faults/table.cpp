@@ -84,6 +84,7 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   if (const auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool()); !person) {
     return under("operator", person.error());
   }
+  const auto delay = static_cast<std::size_t>(params.servo.extra_delay_cycles);
   return ArmFaultBench{.setup = *setup,
                        .leader_limits = leader_limits,
                        .follower_limits = follower_limits,
@@ -91,8 +92,8 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
                        .follower_gates = joint_gates(params.rig.follower_gate, follower_limits),
                        .leader_watch = *leader_watch,
                        .follower_watch = *follower_watch,
-                       .leader = {*std::move(leader), leader_limits},
-                       .follower = {*std::move(follower), follower_limits}};
+                       .leader = {*std::move(leader), leader_limits, delay},
+                       .follower = {*std::move(follower), follower_limits, delay}};
 }
 
 FaultPlan draw_arm_plan(const FaultRow& row, const ArmFaultBench& bench, std::int64_t index) {

@@ -209,7 +209,7 @@ ArmHold ArmTaps::hold(std::size_t tap) const {
   ArmHold found;
   std::vector<double> forces_N;
   const arm::Vector3 still = arm::Vector3::Zero();
-  for (std::size_t k = 0; k < ticks_in(hold_s, pair.tick_s()); ++k) {
+  for (std::size_t k = 0; k < ticks_in(setup_.params.task.hold_s, pair.tick_s()); ++k) {
     pair.step(still, still);
     forces_N.push_back(pair.hand_force_N().norm());
     found.drift_m = std::max(found.drift_m, pair.farthest_m());

@@ -65,12 +65,11 @@ struct ArmReach {
   double drift_m = 0.0;        ///< farthest that cancellation moves the command from where the leader is
 };
 
-/// An operator who holds the leader still for `hold_s`, in the air.
+/// An operator who holds the leader still for `ArmTappingTask::hold_s`, in the air.
 struct ArmHold {
   double force_N = 0.0;  ///< of the hand's spring and damper, RMS
   double drift_m = 0.0;  ///< farthest of either tool from where it began
 };
-inline constexpr double hold_s = 10.0;
 
 /// What an operator accepts: beyond it the verdict names the figure.
 inline constexpr double most_lost_s = 0.05;

@@ -137,6 +137,7 @@ struct ArmTappingTask {
   double shallowest_m = 0.006;
   double deepest_m = 0.012;
   double observation_s = 0.6;
+  double hold_s = 10.0;
   double model_error = 0.2;
   ArmModelErrors errors;
   static constexpr auto fields() {
@@ -159,6 +160,8 @@ struct ArmTappingTask {
         field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
         field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
               "How long a tap is observed from first touch, while the operator keeps pressing."),
+        field("hold_s", &T::hold_s, units::second, between(1.0, 60.0),
+              "How long the operator holds still in the air, for the force on the hand and the drift at rest."),
         field("model_error", &T::model_error, units::none, between(0.0, 0.5),
               "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
               "friction of each joint, mass, stiffness and damping of the hand) evenly from minus to plus this share."),

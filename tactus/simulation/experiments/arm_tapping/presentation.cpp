@@ -197,9 +197,9 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
        {"false force", "Force that the follower sends in it although nothing is touched, at the leader's tool, RMS."},
        {"drift", "Farthest in it of the command from where the leader is, by cancellation."},
        {"hold, hold drift",
-        "The operator holds still for 10 s in the air: force of the hand's spring and damper, RMS, 1 N at most, and "
-        "the "
-        "farthest of either tool from where it began, 3 mm at most; the largest of up to four draws of the errors."}});
+        "The operator holds still in the air (task.hold_s): force of the hand's spring and damper, RMS, 1 N at most, "
+        "and the farthest of either tool from where it began, 3 mm at most; the largest of up to four draws of the "
+        "errors."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }
