@@ -277,6 +277,50 @@ TEST(ArmSites, ATickDoesNotAllocate) {
   EXPECT_TRUE(from_follower.external_torque.allFinite());
 }
 
+TEST(ArmSites, ATickWithDampersWashedOutAndABiasByTravelDoesNotAllocate) {
+  auto leader = *ArmLeader::make({.method = ArmMethod::cancellation,
+                                  .damping_N_s_per_m = 10.0,
+                                  .drive_damping_limit_N_s_per_m = 5.0,
+                                  .damping_washout_Hz = 3.0},
+                                 believed(), tick);
+  ArmFollower::Params params{.torque = TorqueSource::observer};
+  params.observer.bias_distance_m = 0.3;
+  auto follower = *ArmFollower::make(params, touching_arm(), tick);
+  ArmReading reading = resting();
+  reading.torque = arm::Chain::make(believed().carried)->gravity_torque(arm_plants::bent());
+  ArmMessage from_follower = touching(0.0);
+  const std::uint64_t before = laws::own_allocation_count();
+  for (int k = 0; k < 100; ++k) {
+    reading.velocity.setConstant(0.01 * k);
+    from_follower = k < 50 ? touching(k < 25 ? 0.0 : 5.0) : from_follower;
+    const auto told = leader.step(reading, from_follower);
+    from_follower = follower.step(reading, JointVector::Zero(7), told.message).message;
+  }
+  EXPECT_EQ(laws::own_allocation_count(), before);
+  EXPECT_TRUE(from_follower.external_torque.allFinite());
+}
+
+TEST(ArmLeader, WithDampersWashedOutSlowMotionIsFreeAndFastMotionIsDampedAsBefore) {
+  ArmLeader::Params params{.method = ArmMethod::position_force, .feed_forward = {.friction_share = 0.0}};
+  params.damping_N_s_per_m = 40.0;
+  params.drive_damping.joint_1.damping_N_m_s_per_rad = 5.0;
+  auto damped = *ArmLeader::make(params, believed(), tick);
+  params.damping_washout_Hz = 3.0;
+  auto washed = *ArmLeader::make(params, believed(), tick);
+  const JointVector weight = arm::Chain::make(believed().carried)->gravity_torque(arm_plants::bent());
+  ArmReading moving = resting();
+  // The drives' own dampers are in the command, towards rest; the rest is torque over the bus.
+  const auto resists = [&](ArmLeader& leader) -> JointVector {
+    const auto command = leader.step(moving, touching(0.0)).command;
+    return weight - command.torque + command.damping.cwiseProduct(moving.velocity);
+  };
+  moving.velocity << 0.1, 0.2, -0.1, 0.3, 0.0, 0.1, 0.2;
+  const JointVector at_once = resists(washed), always = resists(damped);
+  EXPECT_LT((at_once - always).norm(), 0.03 * always.norm());
+  for (int k = 0; k < 2000; ++k) resists(washed);
+  EXPECT_LT(resists(washed).norm(), 1e-6 * always.norm());
+}
+
 TEST(ArmSites, RefuseNumbersOutOfBoundsByName) {
   EXPECT_EQ(ArmLeader::make({.force_gain = -1.0}, believed(), tick).error().parameter, "force_gain");
   EXPECT_EQ(ArmLeader::make({.command_low_pass_Hz = 300.0}, believed(), Seconds{2e-3}).error().parameter,

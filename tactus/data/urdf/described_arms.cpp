@@ -45,6 +45,14 @@ Result<DescribedArm> described(const ArmParams& params, const std::string& key, 
                            .joint_stiffness_N_m_per_rad = from.stiffness_share * params.joint_stiffness_N_m_per_rad,
                            .joint_damping_N_m_s_per_rad = from.stiffness_share * params.joint_damping_N_m_s_per_rad,
                            .play_rad = from.play_rad};
+    if (from.play_rad > 0.0 && found.arm.motors[i].joint_stiffness_N_m_per_rad == 0.0) {
+      const std::string arm = key.substr(0, key.rfind('.'));
+      return Error{ErrorCode::inconsistent,
+                   arm + ".joints.joint_" + std::to_string(i + 1) + ".play_rad",
+                   "backlash needs an elastic joint behind it: write " + arm +
+                       ".joint_stiffness_N_m_per_rad and a stiffness_share above 0, or a play of 0",
+                   {}};
+    }
   }
   if (params.assumed_joint_stiffness_N_m_per_rad > 0.0) {
     found.assumed_joint_stiffness_N_m_per_rad.resize(found.start.size());
@@ -183,6 +191,9 @@ arm::JointVector assumed_stiffness(const DescribedArm& of) {
 Result<DescribedArms> describe_arms(const station::ArmTeleoperatorParams& params, const Urdfs& urdfs) {
   const arm_control::Coupling coupling = params.control.follower.coupling;
   if (Check wrong = refuse_method(params.control, coupling)) return *std::move(wrong);
+  if (params.control.tare.cycles > 0 && params.control.method == arm_control::ArmMethod::four_channel) {
+    return inconsistent("control.tare.cycles", "the observers of four-channel control take no tare: write 0");
+  }
   auto arms = pair_of(params.arm, coupling, urdfs);
   if (!arms) return arms.error();
   for (const DescribedArm* arm : {&arms->leader, &arms->follower}) {

@@ -1,7 +1,10 @@
 #include <tactus/data/urdf/urdf.hpp>
+#include <tactus/kernel/station/supervised_arms.hpp>
+#include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
 #include <tactus/simulation/experiments/arm_tapping/presentation.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -71,6 +74,78 @@ TEST(RealArms, ErrorsAreDrawnForEachTapAndLeaveTheOtherDrawsAsTheyWere) {
   }
   EXPECT_NE(drawn.tap(0).model_params.leader.joints[0].body.mass_kg,
             drawn.tap(1).model_params.leader.joints[0].body.mass_kg);
+}
+
+TEST(RealArms, BacklashOfAJointReachesTheSimulatedArmAndNeedsAnElasticJoint) {
+  ArmTappingParams params = shipped_with({});
+  params.arm.joints.joint_2.play_rad = 0.004;
+  EXPECT_EQ(set_up_arm_pair(params, shipped_folder).error().parameter, "arm.joints.joint_2.play_rad");
+  params.arm.joint_stiffness_N_m_per_rad = 10000.0;
+  const ArmPairSetup setup = *set_up_arm_pair(params, shipped_folder);
+  EXPECT_EQ(setup.leader.arm.motors[1].play_rad, 0.004);
+  EXPECT_EQ(setup.follower.arm.motors[1].play_rad, 0.004);
+  EXPECT_EQ(setup.leader.arm.motors[0].play_rad, 0.0);
+  // The link rests on a flank, half of the play from where its motor is, and the spring is bent by little more.
+  auto plant = *arm_plants::ArmPlant::make(setup.follower.arm, setup.follower.start);
+  const arm::JointVector sag_rad = plant.link_position() - plant.read().position;
+  EXPECT_NEAR(std::fabs(sag_rad[1]), 0.002, 0.0008);
+  EXPECT_LT(std::fabs(sag_rad[0]), 0.001);
+}
+
+TEST(RealArms, ModelsTakeElasticJointsForWhatTheFileAssumesAndPlantsForWhatTheyAre) {
+  ArmTappingParams params = shipped_with({});
+  params.arm.joint_stiffness_N_m_per_rad = 10000.0;
+  const ArmPairSetup known = *set_up_arm_pair(params, shipped_folder);
+  params.arm.assumed_joint_stiffness_N_m_per_rad = 3000.0;
+  const ArmPairSetup assumed = *set_up_arm_pair(params, shipped_folder);
+  const auto shares = params.arm.joints.of(7);
+  for (std::size_t i = 0; i < 7; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double share = shares[i].stiffness_share;
+    EXPECT_EQ(known.exact.induced.joint_stiffness_N_m_per_rad[at], share * 10000.0);
+    EXPECT_EQ(assumed.exact.induced.joint_stiffness_N_m_per_rad[at], share * 3000.0);
+    EXPECT_EQ(assumed.exact.follower_joint_stiffness_N_m_per_rad[at], share * 3000.0);
+    EXPECT_EQ(assumed.leader.arm.motors[i].joint_stiffness_N_m_per_rad, share * 10000.0);
+    EXPECT_EQ(assumed.follower.arm.motors[i].joint_stiffness_N_m_per_rad, share * 10000.0);
+  }
+}
+
+TEST(RealArms, AFurtherDelayOfTheDrivesIsThatOfASlowerBus) {
+  // A torque over the bus acts so many cycles later, and nothing else differs.
+  const ArmPairSetup setup = *set_up_arm_pair(shipped_with({}), shipped_folder);
+  const auto moves_at = [&](std::size_t delay) {
+    const std::size_t joints = setup.leader.joints.size();
+    arm_plants::ArmPlant::Params floating = setup.leader.arm;
+    floating.chain.gravity = {0.0, 0.0, 0.0};
+    for (arm::JointParams& joint : floating.chain.joints) joint.friction = {};
+    arm_plants::ArmDevice device(*arm_plants::ArmPlant::make(floating, setup.leader.start),
+                                 Joints<station::DeviceLimits>(joints), delay);
+    Joints<station::DeviceCommand> pushes(joints);
+    for (std::size_t i = 0; i < joints; ++i) {
+      pushes[i].enabled = true;
+      pushes[i].force_N = 1.0;
+    }
+    for (int cycle = 0; cycle < 20; ++cycle) {
+      device.write(pushes);
+      for (int i = 0; i < 10; ++i) device.step({});
+      if (device.plant().link_position() != setup.leader.start) return cycle;
+    }
+    return -1;
+  };
+  EXPECT_EQ(moves_at(0), 1);
+  EXPECT_EQ(moves_at(3), 4);
+}
+
+TEST(RealArms, ATareIsRefusedForMotorsForFaultsAndForFourChannelControl) {
+  ArmTappingParams params = shipped_with({});
+  EXPECT_EQ(station::refuse_tare(params), std::nullopt);
+  params.control.tare.cycles = 2;
+  EXPECT_EQ(make_arm_fault_bench(params, shipped_folder).error().parameter, "control.tare.cycles");
+  const ArmPairSetup setup = *set_up_arm_pair(params, shipped_folder);
+  const Joints<station::DeviceLimits> limits(setup.leader.joints.size());
+  EXPECT_EQ(station::supervise_arms(params, setup, limits, limits, {}).error().parameter, "control.tare.cycles");
+  params.control.method = arm_control::ArmMethod::four_channel;
+  EXPECT_EQ(set_up_arm_pair(params, shipped_folder).error().parameter, "control.tare.cycles");
 }
 
 TEST(RealArms, AnArmEndsAtTheLinkThatIsNamedAsItsTip) {
