@@ -24,7 +24,7 @@ struct ArmRecording {
   std::filesystem::path file = {};
   std::vector<std::string> position_names = {};
   std::vector<std::string> effort_names = {};
-  /// `N m` of torques, of joints that slide too; else as the file has it, empty if it has none or several.
+  /// `N m` of torques, of joints that slide too; else as the file has it, empty for no unit or several.
   std::string effort_unit = {};
   double start_s = 0.0;                            ///< what the file states of the first sample
   Seconds sample_time{0.0};                        ///< mean over the file
