@@ -12,7 +12,7 @@ namespace tactus::arm_identification {
 
 /// What is known of the unit of efforts.
 enum class EffortUnit {
-  torque,   ///< N m, or N of a joint that slides: stated and taken as stated
+  torque,   ///< N m, or N of a joint that slides: as stated
   current,  ///< of a scale of its own at each joint
   unknown   ///< torques unless they cannot be
 };
