@@ -409,9 +409,9 @@ std::optional<Payload> find_payload(const ArmData& data, const arm::Chain::Param
     squares += share * share;
   }
   if (payload.left_without < much_left || payload.left > much_left) return std::nullopt;
-  // Offsets of the efforts that explain as much are the simpler reason.
+  // Offsets of the efforts that explain nearly as much are the simpler reason.
   const double by_offsets = total(left_with(data, needed, as_stated(urdf), true));
-  if (squares > clearly * total(without) || squares > by_offsets) return std::nullopt;
+  if (squares > clearly * std::min(total(without), by_offsets)) return std::nullopt;
   return payload;
 }
 
