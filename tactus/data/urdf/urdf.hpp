@@ -56,7 +56,8 @@ Result<std::string> text_of(const std::filesystem::path& file);
 Result<Arm> parse(const std::string& text, const std::filesystem::path& file, const std::string& tip = {});
 
 /// The text of the file with other bodies, damping and Coulomb friction, and all else as it is: names, limits, meshes,
-/// what is off the chain. `arm`: as `read` made it of this file, its `params` with the new numbers. A body is
+/// what is off the chain. A joint whose axis in `arm` points against that of the file is written with that axis, and
+/// its range is turned round. `arm`: as `read` made it of this file, its `params` with the new numbers. A body is
 /// written to the link behind its joint; links that are fixed to that lose theirs, since it is in there. `comment` is
 /// put at the top of the robot, without "--", which XML forbids there. Read back with the same `tip`, it has these
 /// bodies to rounding. Relative paths of meshes stay as they are, so they count from another folder where the text is

@@ -39,6 +39,17 @@ void put_body(XMLElement& link, const arm::Body& body) {
   inertia->SetAttribute("izz", exact({body.zz_kg_m2}).c_str());
 }
 
+/// Writes the axis and the range of a joint that counts the other way than the file states.
+void reverse_element(XMLElement& joint, const Joint& stated) {
+  XMLElement* axis = joint.FirstChildElement("axis");
+  if (axis == nullptr) axis = joint.InsertNewChildElement("axis");
+  axis->SetAttribute("xyz", exact({-stated.axis.x, -stated.axis.y, -stated.axis.z}).c_str());
+  XMLElement* limit = joint.FirstChildElement("limit");
+  if (limit == nullptr || !stated.has_range) return;
+  limit->SetAttribute("lower", exact({-stated.limits.upper_rad}).c_str());
+  limit->SetAttribute("upper", exact({-stated.limits.lower_rad}).c_str());
+}
+
 }  // namespace
 
 Result<std::string> with_dynamics(const std::filesystem::path& file, const Arm& arm, const std::string& comment) {
@@ -46,6 +57,8 @@ Result<std::string> with_dynamics(const std::filesystem::path& file, const Arm& 
   const auto text = text_of(file);
   if (!text) return text.error();
   if (Check wrong = load(*text, file, document)) return *std::move(wrong);
+  const auto stated = read_elements(*text, file);
+  if (!stated) return stated.error();
   XMLElement* robot = document.RootElement();
   for (XMLElement* link = robot->FirstChildElement("link"); link != nullptr; link = link->NextSiblingElement("link")) {
     const std::string name = link->Attribute("name") != nullptr ? link->Attribute("name") : "";
@@ -61,8 +74,13 @@ Result<std::string> with_dynamics(const std::filesystem::path& file, const Arm& 
     const char* name = joint->Attribute("name");
     const auto found = std::find(arm.joints.begin(), arm.joints.end(), name != nullptr ? name : "");
     if (found == arm.joints.end()) continue;
-    const arm::JointFriction& friction =
-        arm.params.joints[static_cast<std::size_t>(found - arm.joints.begin())].friction;
+    const arm::JointParams& params = arm.params.joints[static_cast<std::size_t>(found - arm.joints.begin())];
+    const auto before = std::ranges::find(stated->joints, *found, &Joint::name);
+    if (before != stated->joints.end() &&
+        params.axis.x * before->axis.x + params.axis.y * before->axis.y + params.axis.z * before->axis.z < 0.0) {
+      reverse_element(*joint, *before);
+    }
+    const arm::JointFriction& friction = params.friction;
     XMLElement* dynamics = joint->FirstChildElement("dynamics");
     if (dynamics == nullptr) dynamics = joint->InsertNewChildElement("dynamics");
     dynamics->SetAttribute("damping", exact({friction.viscous_N_m_s_per_rad}).c_str());

@@ -261,6 +261,11 @@ double ConsistentFit::deviation(int joint, int k) const {
   return std::sqrt(by_coordinate.dot(covariance.block<body_parameters, body_parameters>(at, at) * by_coordinate));
 }
 
+double ConsistentFit::scale_deviation(int joint) const {
+  const Index at = joint_coordinates * static_cast<Index>(scales.size()) + joint;
+  return std::sqrt(covariance(at, at));
+}
+
 VectorXd ConsistentFit::prediction_deviation(int joint, const MatrixXd& columns) const {
   const auto at = static_cast<std::size_t>(joint);
   const Index place = bodies.size() + local_parameters * joint;

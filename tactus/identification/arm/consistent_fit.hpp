@@ -53,6 +53,8 @@ struct ConsistentFit {
   /// Standard deviation of a body's or a joint's number, to first order: `k` counts the ten of the body as
   /// `arm::linear_parameters` does, then the local ones.
   [[nodiscard]] double deviation(int joint, int k) const;
+  /// Standard deviation of the logarithm of a joint's scale.
+  [[nodiscard]] double scale_deviation(int joint) const;
   /// Standard deviation of each row of what the fit states of a joint's effort, as far as the parameters are uncertain.
   /// `columns`: those of the bodies, then the local ones.
   [[nodiscard]] Eigen::VectorXd prediction_deviation(int joint, const Eigen::MatrixXd& columns) const;

@@ -37,6 +37,7 @@ class ArmData {
 
   [[nodiscard]] Eigen::Index rows() const { return effort.rows(); }
   [[nodiscard]] int joints() const { return static_cast<int>(effort.cols()); }
+  [[nodiscard]] const std::vector<ArmMotion>& motions() const { return motions_; }
 
   /// v0 [rad/s]
   [[nodiscard]] double turning_velocity(int joint, const FrictionShape& shape) const;

@@ -4,6 +4,8 @@
 #include <tactus/kernel/signal/decompositions.hpp>
 
 #include <algorithm>
+#include <initializer_list>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -17,74 +19,59 @@ using identification::inconsistent;
 constexpr double usual_torque = 0.4;     ///< scales from here to its inverse are those of torques
 constexpr double scale_deviation = 0.1;  ///< of the logarithm of a torque's scale, where it is not known
 constexpr double current_deviation = 0.7;
+constexpr double clear_share = 0.3;  ///< of an effort that the URDF's bodies make: from here on its scale is clear
 
 /// What one joint's effort says of the URDF's bodies before anything is fitted.
 struct FirstLook {
-  double scale = 0.0;         ///< effort for a N m
-  double share = 0.0;         ///< of the effort that the URDF's bodies make, by their rms and this scale
-  double friction_share = 0;  ///< the same of Coulomb friction, negative where it would give energy
-  double explained = 0.0;     ///< share of the effort's squares about zero
+  double scale = 0.0;  ///< effort for a N m
+  double share = 0.0;  ///< of the effort that the URDF's bodies make, by their rms and this scale
 };
 
-FirstLook look(const ArmData& data, const VectorXd& bodies, int joint, int effort_of) {
-  const auto at = static_cast<std::size_t>(joint);
-  const VectorXd torque = data.bodies[at] * bodies;
-  const VectorXd effort = data.effort.col(effort_of);
+FirstLook look(const ArmData& data, const VectorXd& bodies, int joint) {
+  const VectorXd torque = data.bodies[static_cast<std::size_t>(joint)] * bodies;
+  const VectorXd effort = data.effort.col(joint);
   MatrixXd columns(data.rows(), 5);
   columns << torque, data.local(joint, data.friction(joint, {}, false), torque, {}).leftCols(4);
   const VectorXd found = signal::solve_least_squares(columns, effort);
-  FirstLook result;
-  const double size = rms(effort);
-  if (!(size > 0.0)) return result;
-  result.scale = found[0];
-  result.share = found[0] * rms(torque) / size;
-  result.friction_share = found[2] * rms(columns.col(2)) / size;
-  result.explained = 1.0 - (effort - columns * found).squaredNorm() / effort.squaredNorm();
-  return result;
+  return {.scale = found[0], .share = found[0] * rms(torque) / rms(effort)};
 }
 
 }  // namespace
 
-Check check_efforts(const ArmData& data, const VectorXd& bodies, const std::vector<std::string>& joints,
-                    const ArmRecording& recording) {
-  const int count = data.joints();
-  constexpr double clearly = 0.3;
-  for (int i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!(rms(data.effort.col(i)) > 0.0)) {
-      return inconsistent("effort", "the effort of joint '" + joints[at] + "' (column '" + recording.effort_names[at] +
-                                        "') is 0 throughout; name another column");
-    }
-    for (int k = i + 1; k < count; ++k) {
-      const double left = 2.0 - look(data, bodies, i, i).explained - look(data, bodies, k, k).explained;
-      const double exchanged = 2.0 - look(data, bodies, i, k).explained - look(data, bodies, k, i).explained;
-      if (left < 0.1 || left < 3.0 * exchanged) continue;
-      return inconsistent("effort", "the efforts of joints '" + joints[at] + "' and '" +
-                                        joints[static_cast<std::size_t>(k)] + "' (columns '" +
-                                        recording.effort_names[at] + "' and '" +
-                                        recording.effort_names[static_cast<std::size_t>(k)] +
-                                        "') look swapped: each fits the other joint; exchange them");
-    }
-    const FirstLook own = look(data, bodies, i, i);
-    if (own.share < -clearly || own.friction_share < -clearly) {
-      return inconsistent("effort", "the effort of joint '" + joints[at] + "' (column '" + recording.effort_names[at] +
-                                        "') has the wrong sign: it must push toward +position as the URDF has it; turn "
-                                        "the column round");
-    }
+EffortUnit unit_of(std::span<const ArmRecording> recordings) {
+  const auto all_are = [&](std::initializer_list<std::string_view> units) {
+    return std::all_of(recordings.begin(), recordings.end(), [&](const ArmRecording& recording) {
+      return std::find(units.begin(), units.end(), recording.effort_unit) != units.end();
+    });
+  };
+  if (all_are({"N m", "N"})) return EffortUnit::torque;
+  return all_are({"A", "mA", "uA", "kA"}) ? EffortUnit::current : EffortUnit::unknown;
+}
+
+Check check_efforts(const ArmData& data, const std::vector<std::string>& joints, const ArmRecording& recording) {
+  for (int j = 0; j < data.joints(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    if (rms(data.effort.col(j)) > 0.0) continue;
+    return inconsistent("effort", "the effort of joint '" + joints[at] + "' (column '" + recording.effort_names[at] +
+                                      "') is 0 throughout; name another column");
   }
   return {};
 }
 
 std::vector<JointPrior> priors_of(const ArmData& data, const arm::Chain& chain, const arm::Chain::Params& urdf,
-                                  const VectorXd& bodies, bool& scaled) {
+                                  const VectorXd& bodies, EffortUnit unit, bool& scaled) {
   const int count = data.joints();
   std::vector<FirstLook> looks;
-  scaled = false;
+  scaled = unit == EffortUnit::current;
+  std::vector<double> clear_scales;
   for (int j = 0; j < count; ++j) {
-    looks.push_back(look(data, bodies, j, j));
-    const bool clear = looks.back().share > 0.3;
-    scaled = scaled || (clear && (looks.back().scale < usual_torque || looks.back().scale > 1.0 / usual_torque));
+    looks.push_back(look(data, bodies, j));
+    if (looks.back().share <= clear_share) continue;
+    const double scale = looks.back().scale;
+    clear_scales.push_back(scale);
+    scaled = scaled || (unit == EffortUnit::unknown && (scale < usual_torque || scale > 1.0 / usual_torque));
   }
+  std::sort(clear_scales.begin(), clear_scales.end());
   const arm::JointMatrix mass = chain.mass_matrix(arm::JointVector::Zero(count));
   std::vector<JointPrior> priors;
   for (int j = 0; j < count; ++j) {
@@ -95,10 +82,11 @@ std::vector<JointPrior> priors_of(const ArmData& data, const arm::Chain& chain, 
     prior.body = joint.body;
     if (scaled) {
       const double by_size = rms(data.effort.col(j)) / std::max(rms(data.bodies[at] * bodies), 1e-9);
-      prior.scale = seen.share > 0.3 ? seen.scale : by_size;
+      const double others = clear_scales.empty() ? by_size : clear_scales[clear_scales.size() / 2];
+      prior.scale = seen.share > clear_share ? seen.scale : others;
       prior.scale_deviation = current_deviation;
     } else {
-      prior.scale_deviation = scale_deviation;
+      prior.scale_deviation = unit == EffortUnit::torque ? 0.0 : scale_deviation;
     }
     prior.torque = rms(data.effort.col(j)) / prior.scale;
     const double armature = joint.drive.reflected_kg_m2();

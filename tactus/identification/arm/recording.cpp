@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 namespace tactus::arm_identification {
 namespace {
@@ -31,6 +32,10 @@ constexpr std::array arm_position_units{ArmUnit{"", 1.0},     ArmUnit{"rad", 1.0
                                         ArmUnit{"mrad", 1e-3}};
 constexpr std::array arm_velocity_units{ArmUnit{"", 1.0},    ArmUnit{"rad/s", 1.0}, ArmUnit{"deg/s", degree},
                                         ArmUnit{"m/s", 1.0}, ArmUnit{"cm/s", 1e-2}, ArmUnit{"mm/s", 1e-3}};
+
+constexpr std::array arm_torque_units{ArmUnit{"N m", 1.0},   ArmUnit{"mN m", 1e-3}, ArmUnit{"kN m", 1e3},
+                                      ArmUnit{"N cm", 1e-2}, ArmUnit{"N", 1.0},     ArmUnit{"mN", 1e-3},
+                                      ArmUnit{"kN", 1e3}};
 
 Error at_file(Error error, const std::filesystem::path& file) {
   if (error.place.empty()) error.place = file.string();
@@ -53,6 +58,23 @@ Check into_si(std::vector<Column>& columns, const std::array<ArmUnit, size>& uni
     for (double& value : column.values) value *= unit->factor;
   }
   return {};
+}
+
+/// Torques into N m, or N of a joint that slides; what is no torque, or has no unit, stays as it is. The unit of all of
+/// them: none where some are torques and others are not.
+std::string unify_efforts(std::vector<Column>& columns) {
+  std::string all = columns.front().unit;
+  for (Column& column : columns) {
+    const auto unit = std::find_if(arm_torque_units.begin(), arm_torque_units.end(),
+                                   [&](const ArmUnit& u) { return u.symbol == column.unit; });
+    if (unit != arm_torque_units.end()) {
+      for (double& value : column.values) value *= unit->factor;
+      column.unit = "N m";
+    }
+    if (&column == &columns.front()) all = column.unit;
+    if (column.unit != all) all.clear();
+  }
+  return all;
 }
 
 Check check_count(const std::vector<Column>& columns, std::size_t joints, const std::string& role) {
@@ -145,10 +167,11 @@ Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumn
       return at_file(recording::contradicted_by_velocity(velocity.name, *factor, step_s), file);
     }
   }
+  std::string effort_unit = unify_efforts(efforts);
   ArmRecording result{.file = file,
                       .position_names = names_of(positions),
                       .effort_names = names_of(efforts),
-                      .effort_unit = efforts.front().unit,
+                      .effort_unit = std::move(effort_unit),
                       .start_s = times->first_s,
                       .sample_time = Seconds{step_s}};
   const Steps steps{.first_s = time_s.front(), .step_s = step_s, .count = time_s.size()};

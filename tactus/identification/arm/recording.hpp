@@ -24,12 +24,13 @@ struct ArmRecording {
   std::filesystem::path file = {};
   std::vector<std::string> position_names = {};
   std::vector<std::string> effort_names = {};
-  std::string effort_unit = {};                    ///< as the file has it, of the first joint; empty if it has no unit
+  /// `N m` of torques, of joints that slide too; else as the file has it, empty for no unit or several.
+  std::string effort_unit = {};
   double start_s = 0.0;                            ///< what the file states of the first sample
   Seconds sample_time{0.0};                        ///< mean over the file
   std::vector<std::vector<double>> position = {};  ///< [rad], m of joints that slide
   std::vector<std::vector<double>> velocity = {};  ///< [rad/s]; empty if the file has no velocity
-  std::vector<std::vector<double>> effort = {};    ///< [as in the file]
+  std::vector<std::vector<double>> effort = {};    ///< [N m], N of joints that slide; currents as in the file
 
   [[nodiscard]] std::size_t joints() const { return position.size(); }
   [[nodiscard]] std::size_t samples() const { return position.empty() ? 0 : position.front().size(); }

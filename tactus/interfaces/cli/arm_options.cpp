@@ -1,13 +1,16 @@
 #include <tactus/data/report/text.hpp>
 #include <tactus/identification/arm/rig_log.hpp>
 #include <tactus/interfaces/cli/arm_options.hpp>
+#include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/streams.hpp>
 #include <tactus/kernel/arm/chain.hpp>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -92,9 +95,75 @@ Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std:
   return std::vector{*std::move(recording)};
 }
 
+namespace {
+
+/// Three numbers; none of what is something else.
+std::optional<arm::Gravity> gravity_of(const std::vector<std::string>& words) {
+  std::array<double, 3> numbers{};
+  if (words.size() != numbers.size()) return std::nullopt;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const char* const end = words[i].data() + words[i].size();
+    const char* const from = words[i].data() + (words[i].starts_with('+') ? 1 : 0);
+    const auto read = std::from_chars(from, end, numbers[i]);
+    if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
+  }
+  return arm::Gravity{numbers[0], numbers[1], numbers[2]};
+}
+
+/// The joint counts the other way: its axis, its limits.
+Check reverse(urdf::Arm& arm, const std::string& name) {
+  const auto found = std::find(arm.joints.begin(), arm.joints.end(), name);
+  if (found == arm.joints.end()) {
+    return Error{.code = ErrorCode::unknown_key,
+                 .parameter = {},
+                 .message = "'" + name + "' is no moving joint of the arm; it has " + joined_by_commas(arm.joints),
+                 .place = "--reverse"};
+  }
+  arm::JointParams& joint = arm.params.joints[static_cast<std::size_t>(found - arm.joints.begin())];
+  joint.axis = {-joint.axis.x, -joint.axis.y, -joint.axis.z};
+  joint.limits.lower_rad = -std::exchange(joint.limits.upper_rad, -joint.limits.lower_rad);
+  return {};
+}
+
+/// A point mass on the last link.
+Check load(urdf::Arm& arm, const std::vector<double>& payload) {
+  const double mass_kg = payload.front();
+  if (!(mass_kg > 0.0) || !(mass_kg < 1e4)) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = {},
+                 .message = "a payload of " + report::number(mass_kg, 3) + " kg must be above 0 and below 10000 kg",
+                 .place = "--payload"};
+  }
+  arm::Vector3 at = arm.frames.back().back().origin_m;
+  if (payload.size() == 4) at = {payload[1], payload[2], payload[3]};
+  arm::Body& body = arm.params.joints[arm.params.joints.size() - 1].body;
+  arm::BodyVector sums = arm::linear_parameters(body);
+  sums[0] += mass_kg;
+  sums.segment<3>(1) += mass_kg * at;
+  const arm::Matrix3 inertia = mass_kg * (at.squaredNorm() * arm::Matrix3::Identity() - at * at.transpose());
+  sums.tail<6>() += (arm::BodyVector() << 0, 0, 0, 0, inertia(0, 0), inertia(0, 1), inertia(0, 2), inertia(1, 1),
+                     inertia(1, 2), inertia(2, 2))
+                        .finished()
+                        .tail<6>();
+  body = arm::body_of(sums);
+  return {};
+}
+
+}  // namespace
+
 Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
   arm::Gravity gravity;
-  if (!options.gravity.empty()) gravity = {options.gravity[0], options.gravity[1], options.gravity[2]};
+  if (!options.gravity.empty() && !options.gravity_is_free()) {
+    const auto stated = gravity_of(options.gravity);
+    if (!stated) {
+      return Error{.code = ErrorCode::syntax,
+                   .parameter = {},
+                   .message = "'" + joined_by_commas(options.gravity) +
+                              "' is not three numbers in m/s^2; write for instance --gravity 9.81,0,0",
+                   .place = "--gravity"};
+    }
+    gravity = *stated;
+  }
   if (Check wrong = validate(gravity)) {
     Error error = *std::move(wrong);
     error.place = "--gravity";
@@ -106,17 +175,41 @@ Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
     for (const std::string& warning : *warnings) message_stream() << "Warning: " << warning << "\n";
   }
   arm->params.gravity = gravity;
+  for (const std::string& joint : options.reversed) {
+    if (Check wrong = reverse(*arm, joint)) return *std::move(wrong);
+  }
+  if (!options.payload.empty()) {
+    if (Check wrong = load(*arm, options.payload)) return *std::move(wrong);
+  }
   warn_of_weight(*arm);
   return arm;
 }
 
-void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options) {
+void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options, bool finds_gravity) {
   verb.add_option("--urdf", options.file, "URDF of the arm")->required()->type_name("FILE");
   verb.add_option("--tip", options.tip, "Last link of the arm, if the URDF continues or branches")->type_name("LINK");
-  verb.add_option("--gravity", options.gravity, "Gravity in the frame of the base, in m/s^2; 0,0,-9.81 by default")
-      ->type_name("X,Y,Z")
+  auto* gravity = verb.add_option("--gravity", options.gravity,
+                                  std::string("Gravity in the frame of the base, in m/s^2; 0,0,-9.81 by default") +
+                                      (finds_gravity ? "; 'free' finds its direction" : ""))
+                      ->type_name(finds_gravity ? "X,Y,Z|free" : "X,Y,Z")
+                      ->delimiter(',');
+  if (finds_gravity) {
+    gravity->expected(1, 3);
+  } else {
+    gravity->expected(3);
+  }
+  verb.add_option("--reverse", options.reversed, "Joint that counts the other way than the URDF; may be given again")
+      ->type_name("JOINT")
       ->delimiter(',')
-      ->expected(3);
+      ->allow_extra_args(false);
+  verb.add_option(
+          "--payload", options.payload,
+          "Mass on the last link that the URDF lacks, in kg, and its place in m in the frame of the last moving "
+          "link; at the tip by default")
+      ->type_name("KG[,X,Y,Z]")
+      ->delimiter(',')
+      ->expected(1, 4)
+      ->check(real_between(-1e4, 1e4));
 }
 
 void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help) {

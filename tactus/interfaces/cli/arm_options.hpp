@@ -28,13 +28,20 @@ struct ArmOptions {
 struct ArmUrdfOptions {
   std::string file;
   std::string tip;
-  std::vector<double> gravity;
+  std::vector<std::string> gravity;   ///< three numbers, or the word `free` where the command takes it
+  std::vector<std::string> reversed;  ///< joints that count the other way than the file states
+  std::vector<double> payload;        ///< mass in kg, and its place in m in the frame of the last moving link
+
+  [[nodiscard]] bool gravity_is_free() const { return gravity.size() == 1 && gravity.front() == "free"; }
 };
 
-/// The arm of the file, with the gravity that was given. Errors: those of `urdf::read`, and of `arm::Gravity`.
+/// The arm of the file, with gravity, reversed joints and payload as they were given. Errors: those of `urdf::read`,
+/// and of `arm::Gravity`; `unknown_key` for a reversed joint that the arm does not have; `out_of_bounds` for a payload
+/// of no mass.
 Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options);
-/// Adds `--urdf`, `--tip` and `--gravity` to a command.
-void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options);
+/// Adds `--urdf`, `--tip`, `--gravity`, `--reverse` and `--payload` to a command. `finds_gravity`: whether `--gravity
+/// free` is one.
+void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options, bool finds_gravity);
 
 /// A recording with these columns, or the stretches of a log (`read_rig_log`), which names its own columns.
 /// Errors: those of `arm_identification::read_arm` and `read_rig_log`; `missing` for a table without a role,

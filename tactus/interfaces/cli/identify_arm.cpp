@@ -7,6 +7,7 @@
 #include <tactus/interfaces/cli/identify.hpp>
 #include <tactus/interfaces/cli/internal/parameters_json.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
+#include <tactus/interfaces/cli/progress_line.hpp>
 #include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/streams.hpp>
 #include <tactus/kernel/core/parameters.hpp>
@@ -35,18 +36,27 @@ struct IdentifyArmOptions {
   std::vector<std::string> files;
   ArmUrdfOptions urdf;
   std::optional<double> cutoff_Hz;
+  bool free_scales = false;
 };
 
 std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& found) {
   using Json = nlohmann::ordered_json;
-  Json document{{"recordings", options.files},
-                {"urdf", options.urdf.file},
-                {"duration_s", found.duration_s},
-                {"cutoff_Hz", found.cutoff_Hz},
-                {"scaled_efforts", found.scaled_efforts},
-                {"base_parameters", found.base_parameters},
-                {"determined_combinations", found.determined_combinations},
-                {"joints", Json::array()}};
+  Json document{
+      {"recordings", options.files},
+      {"urdf", options.urdf.file},
+      {"duration_s", found.duration_s},
+      {"cutoff_Hz", found.cutoff_Hz},
+      {"scaled_efforts", found.scaled_efforts},
+      {"base_parameters", found.base_parameters},
+      {"determined_combinations", found.determined_combinations},
+      {"gravity_m_per_s2",
+       {found.model.head.gravity.x_m_per_s2, found.model.head.gravity.y_m_per_s2, found.model.head.gravity.z_m_per_s2}},
+      {"payload_kg", found.payload ? Json(found.payload->mass_kg) : Json(nullptr)},
+      {"payload_centre_m",
+       found.payload ? Json({found.payload->centre_m.x(), found.payload->centre_m.y(), found.payload->centre_m.z()})
+                     : Json(nullptr)},
+      {"warnings", found.warnings},
+      {"joints", Json::array()}};
   for (const ArmJointFit& joint : found.joints) {
     document["joints"].push_back({{"name", joint.name},
                                   {"effort_rms", joint.effort_rms},
@@ -56,6 +66,7 @@ std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& 
                                   {"least_squares_held_out_relative", joint.least_squares_relative},
                                   {"held_out_coverage_95", joint.held_out_coverage},
                                   {"effort_per_N_m", joint.effort_per_N_m},
+                                  {"scale_determined", joint.scale_determined},
                                   {"parameters", parameters_json(joint.parameters)}});
   }
   return report::json_text(document);
@@ -109,7 +120,7 @@ report::Table untold_table(const ArmIdentification& found) {
   return table;
 }
 
-std::string words_of(const ArmIdentification& found) {
+std::string words_of(const ArmIdentification& found, bool free_gravity) {
   int told = 0;
   int all = 0;
   for (const ArmJointFit& joint : found.joints) {
@@ -131,11 +142,26 @@ std::string words_of(const ArmIdentification& found) {
     std::string scaled;
     for (const ArmJointFit& joint : found.joints) {
       if (std::fabs(joint.effort_per_N_m - 1.0) < 1e-6) continue;  // known
-      scaled += (scaled.empty() ? "" : ", ") + joint.name + " " + report::number(joint.effort_per_N_m, 3);
+      scaled += (scaled.empty() ? "" : ", ") + joint.name + " " + report::number(joint.effort_per_N_m, 3) +
+                (joint.scale_determined ? "" : " (not identifiable: assumed near the others')");
     }
     text +=
         " Efforts have scales of their own, for which the masses of the URDF are taken: for 1 N m at " + scaled + ".";
   }
+  if (found.payload) {
+    const arm_identification::Payload& payload = *found.payload;
+    const auto mm = [](double metres) { return report::number(1e3 * metres, 2); };
+    text += " The arm carries about " + report::number(payload.mass_kg, 2) + " kg that the URDF lacks, at " +
+            mm(payload.centre_m.x()) + ", " + mm(payload.centre_m.y()) + ", " + mm(payload.centre_m.z()) +
+            " mm in the frame of the last link: the URDF's bodies leave " + report::number(100.0 * payload.left, 2) +
+            " % of the effort at the worst joint with it, and " + report::number(100.0 * payload.left_without, 2) +
+            " % without it. The identified body of the last link includes it.";
+  }
+  if (free_gravity) {
+    text +=
+        " Gravity found: " + arm_identification::text_of(found.model.head.gravity) + " m/s^2 in the frame of the base.";
+  }
+  for (const std::string& warning : found.warnings) text += "\nWarning: " + warning + ".";
   return text;
 }
 
@@ -161,7 +187,14 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
     if (!read) return read.error();
     for (ArmRecording& recording : *read) recordings.push_back(std::move(recording));
   }
-  const auto found = arm_identification::identify_arm(recordings, urdf->joints, urdf->params, options.cutoff_Hz);
+  const auto found = [&] {
+    ProgressLine line("identify arm");
+    return arm_identification::identify_arm(recordings, urdf->joints, urdf->params,
+                                            {.cutoff_Hz = options.cutoff_Hz,
+                                             .free_scales = options.free_scales,
+                                             .free_gravity = options.urdf.gravity_is_free(),
+                                             .progress = [&](double done) { line.update(done); }});
+  }();
   if (!found) return found.error();
 
   urdf::Arm identified = *urdf;
@@ -174,14 +207,15 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
 
   const report::Table joints = joints_table(*found, recordings.front().effort_unit);
   const report::Table untold = untold_table(*found);
+  const std::string words = words_of(*found, options.urdf.gravity_is_free());
   report::Page page("Dynamics of " + (urdf->name.empty() ? options.urdf.file : urdf->name));
-  page.paragraph(words_of(*found));
+  page.paragraph(words);
   page.table(joints);
   page.table(untold);
   page.table(parameters_table(*found));
   page.footer("tactus " + std::string(version()), command);
   return write_outcome(options.arm.output,
-                       {.text = words_of(*found) + "\n\n" + joints.to_text() + "\n" + untold.to_text(),
+                       {.text = words + "\n\n" + joints.to_text() + "\n" + untold.to_text(),
                         .json = json_of(options, *found),
                         .html = page.to_html(),
                         .figures = {}},
@@ -201,9 +235,11 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
                    "Recordings: .csv, .tsv, .txt, with or without header, or .mat; "
                    "or the log of a rig (the follower, while it follows)")
       ->required();
-  add_arm_urdf_options(*verb, options->urdf);
+  add_arm_urdf_options(*verb, options->urdf, true);
   add_arm_options(*verb, options->arm, command,
                   "Folder for model.toml, arm.urdf, armatures.toml, report.html and results.json");
+  verb->add_flag("--free-scales", options->free_scales,
+                 "Find how much of each effort is 1 N m, although the file states torques");
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")
       ->type_name("HZ")
       ->check(real_between(0.1, 500.0));

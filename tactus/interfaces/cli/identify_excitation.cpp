@@ -239,7 +239,7 @@ void add_identify_excitation(CLI::App& identify, const std::string& name, const 
   CLI::App* verb = identify.add_subcommand("excitation",
                                            "Design a motion of an arm within its limits, to record for `identify arm`");
   options->output.own_files = {"trajectory.csv"};
-  add_arm_urdf_options(*verb, options->urdf);
+  add_arm_urdf_options(*verb, options->urdf, false);
   verb->add_option("--duration-s", options->request.duration_s, "Duration of the motion, from rest to rest")
       ->type_name("S")
       ->check(real_between(1.0, 600.0))
