@@ -10,6 +10,8 @@ namespace tactus::arm_control {
 namespace arming_test {
 namespace {
 
+using arming::Arming, arming::Before, arming::Wiring;
+
 /// How many rigs of each kind; `TACTUS_ARMING_RIGS` in the environment asks for more.
 int rigs_of_each() {
   const char* asked = std::getenv("TACTUS_ARMING_RIGS");
@@ -77,26 +79,6 @@ Wiring reversed(std::size_t joint) {
   return wiring;
 }
 
-std::string words_of(const Fate& fate) {
-  const control::SupportFinding& found = fate.found;
-  if (found.fault == control::SupportFault::none) return "";
-  return std::string("; ") + name_of(found.fault) + " at joint " + std::to_string(found.joint + 1) + " at " +
-         std::to_string(found.share) + ", " + std::to_string(found.moved_m) + " rad, " +
-         std::to_string(found.speed_m_per_s) + " rad/s, " + std::to_string(found.excess_N) + " of " +
-         std::to_string(found.weight_N) + " N m";
-}
-
-std::string words_of(const Outcome& outcome) {
-  const auto mrad = [](double rad) { return std::to_string(std::lround(1e3 * rad)); };
-  return std::string("leader ") + name_of(outcome.leader_state) + " (" + name_of(outcome.leader_cause) +
-         "), follower " + name_of(outcome.follower_state) + " (" + name_of(outcome.follower_cause) + "), " +
-         mrad(outcome.fastest()) + " mrad/s, " + mrad(outcome.farthest()) + " mrad, then " +
-         mrad(std::max(outcome.leader.active_rad_per_s, outcome.follower.active_rad_per_s)) + " mrad/s, after " +
-         std::to_string(outcome.lasted_s) + " s" + words_of(outcome.leader) + words_of(outcome.follower) +
-         "; fastest joint " + std::to_string(outcome.leader.fastest_joint + 1) + " at " +
-         std::to_string(outcome.leader.fastest_at_s) + " s";
-}
-
 constexpr Before situations[] = {Before::hangs, Before::rests, Before::held};
 
 /// Arms so many wrong rigs; until a site lets go no joint may leap.
@@ -108,7 +90,7 @@ void expect_no_leap(const char* what, unsigned seed, Rig&& draw_rig) {
     Draw draw(seed);
     for (int i = 0; i < rigs_of_each(); ++i) {
       const auto [name, model, wiring] = draw_rig(draw);
-      const Outcome outcome = arm_both(model, before, wiring);
+      const Arming outcome = arm_both(model, before, wiring);
       EXPECT_LE(outcome.fastest(), 0.5) << what << " " << name << ", " << name_of(before) << ": " << words_of(outcome);
       EXPECT_LE(outcome.farthest(), 0.03)
           << what << " " << name << ", " << name_of(before) << ": " << words_of(outcome);
@@ -121,7 +103,7 @@ void expect_no_leap(const char* what, unsigned seed, Rig&& draw_rig) {
       if (outcome.became_active()) {
         ++armed;
         afterwards = std::max({afterwards, outcome.leader.active_rad_per_s, outcome.follower.active_rad_per_s});
-      } else if (!outcome.leader.powered && !outcome.follower.powered) {
+      } else if (outcome.refused()) {
         ++refused;
       } else {
         ++released;
@@ -181,7 +163,7 @@ TEST(Arming, AModelThatIsWrongByAFifthIsNotRefusedWhereTheArmHangsOrRests) {
     Draw draw(5);
     double fastest = 0.0, farthest = 0.0, afterwards = 0.0;
     for (int i = 0; i < rigs_of_each(); ++i) {
-      const Outcome outcome = arm_both(nearly_right(draw), before);
+      const Arming outcome = arm_both(nearly_right(draw), before);
       EXPECT_EQ(outcome.leader.found.fault, control::SupportFault::none)
           << i << ", " << name_of(before) << words_of(outcome);
       EXPECT_EQ(outcome.follower.found.fault, control::SupportFault::none)

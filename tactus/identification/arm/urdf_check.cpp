@@ -133,18 +133,18 @@ class Rating {
     for (const arm::JointParams& joint : assumption.urdf.joints) {
       motion.insert(motion.end(), {joint.axis.x, joint.axis.y, joint.axis.z});
     }
-    auto known = known_.find(motion);
-    if (known == known_.end()) {
-      known =
-          known_.emplace(motion, torques_of(*data_, without_armatures(assumption.urdf), assumption.position_of)).first;
+    auto found = torques_by_motion_.find(motion);
+    if (found == torques_by_motion_.end()) {
+      MatrixXd torques = torques_of(*data_, without_armatures(assumption.urdf), assumption.position_of);
+      found = torques_by_motion_.emplace(motion, std::move(torques)).first;
     }
-    return total(left_with(*data_, known->second, assumption, torques_));
+    return total(left_with(*data_, found->second, assumption, torques_));
   }
 
  private:
   const ArmData* data_;
   bool torques_;
-  std::map<std::vector<double>, MatrixXd> known_ = {};
+  std::map<std::vector<double>, MatrixXd> torques_by_motion_ = {};
 };
 
 arm::Vector3 vector_of(const arm::Gravity& g) { return {g.x_m_per_s2, g.y_m_per_s2, g.z_m_per_s2}; }
