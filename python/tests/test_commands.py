@@ -89,10 +89,11 @@ class Commands(InAFolder):
 
     def test_identify_an_arm(self):
         urdf, columns = str(RECORDINGS / "three-joints.urdf"), {"time": "time", "position": "2:4", "effort": "8:10"}
+        gravity = "0,-9.81,0"
         words = ["--time", "time", "--position", "2:4", "--effort", "8:10"]
         free, pushed = str(RECORDINGS / "arm-free-motion.csv"), str(RECORDINGS / "arm-pushed.csv")
-        self.same(tactus.identify("arm", free, urdf=urdf, **columns, out="arm", overwrite=True),
-                  "identify", "arm", free, "--urdf", urdf, *words, "--out", "arm", "--overwrite")
+        self.same(tactus.identify("arm", free, urdf=urdf, gravity=gravity, **columns, out="arm", overwrite=True),
+                  "identify", "arm", free, "--urdf", urdf, "--gravity", gravity, *words, "--out", "arm", "--overwrite")
         self.same(tactus.estimate("torque", pushed, **columns, model="arm/model.toml"),
                   "estimate", "torque", pushed, *words, "--model", "arm/model.toml")
 

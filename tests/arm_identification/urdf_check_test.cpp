@@ -128,14 +128,31 @@ TEST(ArmUrdfCheck, AMassThatTheUrdfLacksIsFoundWithItsSizeAndStatedTorquesAreBel
   EXPECT_TRUE(found->warnings.empty());
 }
 
+/// Arms of two to seven joints.
+arm::Chain::Params arm_of(std::uint64_t seed) {
+  const std::size_t joints = std::array<std::size_t, 4>{2, 4, 6, 7}[seed % 4];
+  return joints == 2 ? planar_arm() : joints == 7 ? open_arm() : drawn_arm(seed, joints);
+}
+
 TEST(ArmUrdfCheck, OfARightUrdfNothingIsNamed) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const std::size_t joints = std::array<std::size_t, 4>{2, 4, 6, 7}[seed % 4];
-    const arm::Chain::Params truth = joints == 2 ? planar_arm() : joints == 7 ? open_arm() : drawn_arm(seed, joints);
-    const auto found = identify_arm(std::array{recording_of(truth, seed)}, joint_names(joints), believed(truth, seed));
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const arm::Chain::Params truth = arm_of(seed);
+    const auto found = identify_arm(std::array{recording_of(truth, seed)}, joint_names(truth.joints.size()), truth);
     ASSERT_TRUE(found) << seed << ": " << describe(found.error());
     EXPECT_FALSE(found->payload) << seed << ": " << found->payload->mass_kg;
     for (const std::string& warning : found->warnings) ADD_FAILURE() << seed << ": " << warning;
+  }
+}
+
+TEST(ArmUrdfCheck, WhereAllMassesAreOffNoJointAndNoGravityIsNamedAndAPayloadIsAtMostWhatTheLastLinkLacks) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const arm::Chain::Params truth = arm_of(seed), urdf = believed(truth, seed);
+    const auto found = identify_arm(std::array{recording_of(truth, seed)}, joint_names(truth.joints.size()), urdf);
+    ASSERT_TRUE(found) << seed << ": " << describe(found.error());
+    for (const std::string& warning : found->warnings) ADD_FAILURE() << seed << ": " << warning;
+    if (!found->payload) continue;
+    const double lacking_kg = truth.joints.back().body.mass_kg - urdf.joints.back().body.mass_kg;
+    EXPECT_NEAR(found->payload->mass_kg, lacking_kg, 0.3 * lacking_kg) << seed;
   }
 }
 
@@ -146,6 +163,8 @@ TEST(ArmUrdfCheck, ASmallErrorIsOnlyWarnedOf) {
   const auto found = identify_arm(std::array{recording_of(truth, 1)}, joint_names(2), planar_arm());
   ASSERT_TRUE(found) << describe(found.error());
   for (const ArmJointFit& joint : found->joints) EXPECT_LT(joint.relative, much_left);
+  ASSERT_EQ(found->warnings.size(), 1U);
+  EXPECT_TRUE(has(found->warnings.front(), "--gravity"));
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST_F(Results, OfRecordingsAreOfTheirSchemas) {
     return words;
   };
   expect_valid("identify arm", with_columns({"identify", "arm", examples_folder + "/recordings/arm-free-motion.csv",
-                                             "--urdf", urdf, "--out", "arm"}));
+                                             "--urdf", urdf, "--gravity", "0,-9.81,0", "--out", "arm"}));
   expect_valid("identify excitation", {"identify", "excitation", "--urdf", urdf, "--duration-s", "6"});
   expect_valid("estimate torque", with_columns({"estimate", "torque", examples_folder + "/recordings/arm-pushed.csv",
                                                 "--model", "arm/model.toml"}));

@@ -88,7 +88,7 @@ TEST(Rig, AMotorThatLosesItsTurnsWithItsPowerStandsForTheTurnInTheRange) {
     EXPECT_TRUE(rig) << describe(rig.error());
     return rig ? rig->pairs()[0].leader->joints[0].joint.first_position_rad(0.0) : 1e9;
   };
-  for (const auto& [bus, model] : {std::pair{"dynamixel", "XM430-W350"}, std::pair{"damiao", "DM4310"}}) {
+  for (const auto& [bus, model] : {std::pair{"dynamixel", "xm430-w350"}, std::pair{"damiao", "DM4310"}}) {
     EXPECT_NEAR(first_place_of(bus, model, "lower_rad = -2.9\nupper_rad = 2.9\n"), 2.0 * std::numbers::pi - 6.1, 1e-12)
         << bus;
     // A joint that goes farther than a turn is where its motor reports it.
