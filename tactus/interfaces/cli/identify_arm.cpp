@@ -151,8 +151,9 @@ std::string words_of(const ArmIdentification& found, bool free_gravity) {
   if (found.payload) {
     const arm_identification::Payload& payload = *found.payload;
     const auto mm = [](double metres) { return report::number(1e3 * metres, 2); };
-    text += " The arm carries about " + report::number(payload.mass_kg, 2) + " kg that the URDF lacks, at " +
-            mm(payload.centre_m.x()) + ", " + mm(payload.centre_m.y()) + ", " + mm(payload.centre_m.z()) +
+    text += " A mass of " + report::number(payload.mass_kg, 2) +
+            " kg that the URDF lacks would explain the efforts, at " + mm(payload.centre_m.x()) + ", " +
+            mm(payload.centre_m.y()) + ", " + mm(payload.centre_m.z()) +
             " mm in the frame of the last link: the URDF's bodies leave " + report::number(100.0 * payload.left, 2) +
             " % of the effort at the worst joint with it, and " + report::number(100.0 * payload.left_without, 2) +
             " % without it. The identified body of the last link includes it.";
