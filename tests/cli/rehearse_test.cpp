@@ -54,7 +54,7 @@ TEST_F(Rehearse, DamiaoMotorsStartWithinTheirLimitsAndAreDrivenAsThoseOfTheFile)
     rig.replace(at, 16, "lower_rad = 1.0");
   }
   const std::string said =
-      rehearse(rig, "--arm --duration-s 5 --set control.supervision.probe.force_N=0.2 --out run --overwrite",
+      rehearse(rig, "--arm --duration-s 5 --set control.force_gain=0 --out run --overwrite",
                {"Rehearsal: all motors are emulated, and no port of the rig file is opened.\n",
                 "arm.leader: 2 emulated damiao motors at /dev/pts/", ", in place of /dev/serial/by-id/LEADER\n",
                 "arm.follower: 2 emulated damiao motors at /dev/pts/", "leader configure, follower configure",
@@ -91,7 +91,7 @@ TEST_F(Rehearse, AFaultOfOneSideIsReportedAsThatOfARealMotorWouldBe) {
                              {"follower active", "leader hold, follower fault (gate), ", "; follower: joint_2 ",
                               "Ended in a fault: follower", "status 1\n"}));
   static_cast<void>(rehearse(pair("damiao", "DM4310", 2, ""), "--arm --duration-s 5 --fault leader:wrong-scale:1",
-                             {"arm.leader.joint_1.motor: motor 1 (DM4310): its register 22 (VMAX) reads ",
+                             {"arm.leader.joint_1.model: motor 1 (DM4310): its register 22 (VMAX) reads ",
                               "tactus: rig.toml: it is not clean, so nothing was driven", "status 1\n"}));
 }
 

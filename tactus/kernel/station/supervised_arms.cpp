@@ -5,6 +5,7 @@
 #include <tactus/kernel/station/supervised_arms.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -51,23 +52,26 @@ Result<Joints<control::SupervisionParams>> joint_supervision(const ArmRigParams&
 }
 
 /// That the sign probe can move each joint of the arm, by its inertia at the pose at which it begins. The other joints
-/// are free here and nothing rubs, so that what is refused could pass nowhere near that pose. A joint that no torque
-/// within its gate's limit moves is left to the judgement of its weight, and to the probe itself. A chain that is wrong
-/// is reported by the site.
+/// are free here and nothing rubs, so that what is refused could pass nowhere near that pose. An arm that is too heavy
+/// for its gates gets no power, so its probes do not matter; a chain that is wrong is reported by the site.
 Check check_probes(const DescribedArm& described, const Joints<control::SupervisionParams>& supervision,
                    const Joints<SafetyGate::Params>& gates) {
   const auto chain = arm::Chain::make(described.arm.chain);
   if (!chain) return std::nullopt;
+  const arm::JointVector weight = chain->gravity_torque(described.start);
   const arm::JointMatrix mass = chain->mass_matrix(described.start);
   const arm::JointMatrix mobility =
       mass.llt().solve(arm::JointMatrix(arm::JointMatrix::Identity(mass.rows(), mass.cols())));
+  for (std::size_t i = 0; i < described.joints.size(); ++i) {
+    if (std::fabs(weight[static_cast<Eigen::Index>(i)]) > gates[i].force_limit_N) return std::nullopt;
+  }
   for (std::size_t i = 0; i < described.joints.size(); ++i) {
     const control::SignProbe::Params& probe = supervision[i].probe;
     const auto at = static_cast<Eigen::Index>(i);
     const double inertia_kg_m2 = 1.0 / mobility(at, at);
     const double torque_N_m = std::max(probe.force_N, probe.most_force_N);
     const double needed_N_m = 50.0 * probe.least_m * inertia_kg_m2 / (probe.duration_s * probe.duration_s);
-    if (torque_N_m == 0.0 || torque_N_m >= needed_N_m || needed_N_m > gates[i].force_limit_N) continue;
+    if (torque_N_m == 0.0 || torque_N_m >= needed_N_m) continue;
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "rig.probe_torque.joint_" + std::to_string(i + 1) + ".torque_N_m",
                  .message = rounded_number(torque_N_m) + " N m cannot move " + described.joints[i] + ", of " +
