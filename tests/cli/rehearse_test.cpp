@@ -54,7 +54,7 @@ TEST_F(Rehearse, DamiaoMotorsStartWithinTheirLimitsAndAreDrivenAsThoseOfTheFile)
     rig.replace(at, 16, "lower_rad = 1.0");
   }
   const std::string said = rehearse(
-      rig, "--arm --duration-s 5 --set control.force_gain=0 --out run --overwrite",
+      rig, "--arm --duration-s 5 --out run --overwrite",
       {"Rehearsal: all motors are emulated, and no port of the rig file is opened.\n",
        "arm.leader: 2 emulated damiao motors at /dev/pts/", ", in place of /dev/serial/by-id/LEADER\n",
        "arm.follower: 2 emulated damiao motors at /dev/pts/", "leader active, follower active (none), ", "status 0\n"});

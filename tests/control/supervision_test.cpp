@@ -82,8 +82,8 @@ TEST(MessageFollower, TheRunningTotalOfEnergyCountsOnlyWhatWasSentWhileFollowing
 
 /// Two sites on a wire without delay, and the buttons.
 struct Pair {
-  SupervisedMaster master = make_supervised_master(params(), 11, tick).value();
-  SupervisedSlave slave = make_supervised_slave(params(), 21, tick).value();
+  SupervisedMaster master;
+  SupervisedSlave slave;
   MasterInput at_master;
   SlaveInput at_slave;
   SiteRequests buttons;
@@ -91,6 +91,9 @@ struct Pair {
   SupervisedMaster::Output master_out;
   SupervisedSlave::Output slave_out;
 
+  explicit Pair(const ControlParams& control = params())
+      : master(make_supervised_master(control, 11, tick).value()),
+        slave(make_supervised_slave(control, 21, tick).value()) {}
   static ControlParams params() {
     ControlParams control;
     control.force_gain = 1.0;
@@ -152,6 +155,19 @@ TEST(Supervision, TheWayToActiveIsAlignArmAndADeadManSwitchPressedAfterArming) {
   EXPECT_EQ(pair.master.state(), SiteState::armed);
   EXPECT_EQ(pair.slave.state(), SiteState::armed);
   EXPECT_EQ(static_cast<SiteCause>(pair.master_out.record.cause), SiteCause::dead_man);
+}
+
+TEST(Supervision, AMasterThatArmsAwayFromZeroIsNotPulledTowardIt) {
+  ControlParams control = Pair::params();
+  control.architecture = "position-position";
+  Pair pair(control);
+  pair.at_master.motor_position_m = pair.at_slave.motor_position_m = 0.3;
+  pair.start();
+  ASSERT_TRUE(pair.active());
+  for (int i = 0; i < 5000; ++i) {
+    pair.step();
+    ASSERT_NEAR(pair.master_out.site.motor_force_N, 0.0, 1e-6) << i;
+  }
 }
 
 TEST(Supervision, ACutEndsInHoldWithinTheTimeOutAndOnlyANewArmingLeadsOut) {

@@ -130,6 +130,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   }
   if (supervision_.lets_go()) site_.release();
   const bool follows = state == SiteState::active && !input.requests.clutch;
+  if (state == SiteState::align || state == SiteState::armed) supervision_.stand_at_packet(offset_m_);
 
   const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
   const bool sinks = site_.is_carried() && !supervision_.carries();

@@ -225,6 +225,13 @@ class SupervisionOf {
     for_each_joint([](MessageFollower& follower, double at_m) noexcept { follower.settle(at_m); }, follower_,
                    position_m);
   }
+  /// Until a master follows, it assumes the slave where the newest packet puts it, less `offset_m`. Otherwise it would
+  /// start at 0 and be pulled toward that.
+  void stand_at_packet(const Lengths& offset_m) noexcept {
+    for_each_joint([](MessageFollower& follower, const Message& message,
+                      double offset) noexcept { follower.settle(message.position_m - offset); },
+                   follower_, newest_.message, offset_m);
+  }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteCause cause() const noexcept { return supervisor_.cause(); }
