@@ -77,3 +77,49 @@ def values(config, names: Tuple[str, ...], turns: Tuple[bool, ...], side, motion
             flat[f"{name}.vel"] = scale * float(side.velocity[joint])
             flat[f"{name}.torque"] = float(side.torque[joint])
     return flat
+
+
+class Half:
+    """What robot and teleoperator have in common; both hold `config`."""
+
+    _pair: Pair | None = None
+
+    @property
+    def action_features(self) -> dict:
+        kinds = ("pos", "vel", "torque") if self.config.use_velocity_and_torque else ("pos",)
+        return {f"{name}.{kind}": float for name in joints_of(self.config) for kind in kinds}
+
+    @property
+    def is_calibrated(self) -> bool:
+        return True  # the rig file has zeros, signs and limits
+
+    def calibrate(self) -> None:
+        """Nothing: `tactus device zero` writes zeros into the rig file."""
+
+    def configure(self) -> None:
+        """Nothing: the rig file configures the motors."""
+
+    def _refuse_connected(self) -> None:
+        if self._pair is not None:
+            raise RuntimeError(f"{self} is already connected")
+
+    def _connect(self) -> None:
+        self._refuse_connected()
+        self._pair = share(self.config)
+
+    def _disconnect(self) -> None:
+        self._connected()
+        self._pair = None
+        give_up(self.config)
+
+    def _connected(self) -> Pair:
+        if self._pair is None:
+            raise RuntimeError(f"{self} is not connected: call connect() first")
+        return self._pair
+
+    def _action(self) -> dict:
+        """Where the leader is, which is what the follower is sent."""
+        running = self._connected().running
+        return values(
+            self.config, running.joints, running.turns, running.newest().leader, self.config.use_velocity_and_torque
+        )

@@ -9,7 +9,7 @@ from . import pair
 from .config_tactus import TactusRobotConfig
 
 
-class TactusRobot(Robot):
+class TactusRobot(pair.Half, Robot):
     """Observations are the follower's joints: `NAME.pos`, `NAME.vel`, `NAME.torque` of its motor and
     `NAME.external_torque`, the contact that its controller estimates; and the cameras. Positions are in degrees or rad,
     velocities in degrees/s or rad/s, torques in N m.
@@ -25,7 +25,6 @@ class TactusRobot(Robot):
         super().__init__(config)
         self.config = config
         self.cameras = make_cameras_from_configs(config.cameras)
-        self._pair = None
 
     @property
     def observation_features(self) -> dict:
@@ -36,30 +35,19 @@ class TactusRobot(Robot):
         return features
 
     @property
-    def action_features(self) -> dict:
-        kinds = ("pos", "vel", "torque") if self.config.use_velocity_and_torque else ("pos",)
-        return {f"{name}.{kind}": float for name in pair.joints_of(self.config) for kind in kinds}
-
-    @property
     def is_connected(self) -> bool:
         return self._pair is not None and all(camera.is_connected for camera in self.cameras.values())
 
-    @property
-    def is_calibrated(self) -> bool:
-        return True  # the rig file has zeros, signs and limits
-
     def connect(self, calibrate: bool = True) -> None:
-        if self._pair is not None:
-            raise RuntimeError(f"{self} is already connected")
-        for camera in self.cameras.values():
-            camera.connect()
-        self._pair = pair.share(self.config)
-
-    def calibrate(self) -> None:
-        """Nothing: `tactus device zero` writes zeros into the rig file."""
-
-    def configure(self) -> None:
-        """Nothing: the rig file configures the motors."""
+        """Cameras first: they may take seconds, and then the arms are coupled. After an error nothing is connected."""
+        self._refuse_connected()
+        try:
+            for camera in self.cameras.values():
+                camera.connect()
+            self._connect()
+        except BaseException:
+            self._disconnect_cameras()
+            raise
 
     def get_observation(self) -> dict:
         running = self._connected().running
@@ -75,20 +63,13 @@ class TactusRobot(Robot):
         return observation
 
     def send_action(self, action: dict) -> dict:
-        running = self._connected().running
-        sample = running.newest()
-        return pair.values(
-            self.config, running.joints, running.turns, sample.leader, self.config.use_velocity_and_torque
-        )
+        return self._action()
 
     def disconnect(self) -> None:
-        self._connected()
-        self._pair = None
-        for camera in self.cameras.values():
-            camera.disconnect()
-        pair.give_up(self.config)
+        self._disconnect()
+        self._disconnect_cameras()
 
-    def _connected(self):
-        if self._pair is None:
-            raise RuntimeError(f"{self} is not connected: call connect() first")
-        return self._pair
+    def _disconnect_cameras(self) -> None:
+        for camera in self.cameras.values():
+            if camera.is_connected:
+                camera.disconnect()

@@ -67,6 +67,28 @@ class Features(unittest.TestCase):
             self.assertTrue((pathlib.Path(folder) / "installed" / names[0] / "__init__.py").exists())
 
 
+class Connecting(unittest.TestCase):
+    def test_after_an_error_nothing_is_connected(self):
+        from lerobot.cameras import CameraConfig
+
+        cameras = {"wrist": CameraConfig(), "top": CameraConfig()}
+        robot = TactusRobot(TactusRobotConfig(**ARMS, cameras=cameras))
+
+        def fail():
+            raise OSError("no such camera")
+
+        robot.cameras["top"].connect = fail
+        with self.assertRaisesRegex(OSError, "no such camera"):
+            robot.connect()
+        self.assertFalse(robot.cameras["wrist"].is_connected)
+        robot = TactusRobot(TactusRobotConfig(**{**ARMS, "rig": "none.toml"}, cameras=cameras))
+        with self.assertRaisesRegex(tactus.RequestError, "none.toml"):
+            robot.connect()
+        self.assertFalse(robot.cameras["wrist"].is_connected)
+        with self.assertRaisesRegex(RuntimeError, "not connected"):
+            robot.disconnect()
+
+
 class Recording(unittest.TestCase):
     def test_episodes_are_recorded_while_the_servo_thread_drives_both_arms(self):
         from lerobot.cameras import CameraConfig
