@@ -140,7 +140,7 @@ inline station::JointSupervisedPair sites_of(const arm::Chain::Params& believed,
                                                Joints<double>(joints, 0.0));
 }
 
-/// Arms both by a model `believed` of each. A hand that holds lets go after 4.2 s.
+/// Arms both by a model `believed` of each. A hand that holds an arm releases it after 4.2 s.
 inline arming::Arming arm_both(const arm::Chain::Params& believed, arming::Before before,
                                const arming::Wiring& wiring = {}, double raise_s = 4.0) {
   constexpr double lets_go_s = 4.2, longest_s = 16.0;

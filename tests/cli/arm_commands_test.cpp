@@ -183,6 +183,12 @@ TEST_F(ArmCommands, wrong_requests_are_answered_with_place_and_remedy) {
   expect(tactus(with({"identify", "arm", "free.csv", "--urdf", "none.urdf"}, numbers)), {"none.urdf"});
   write("cut.urdf", example_text("three-joints.urdf").substr(0, 900));
   expect(tactus(with({"identify", "arm", "free.csv", "--urdf", "cut.urdf"}, numbers)), {"cut.urdf:", "cut off"});
+  const auto with_option = [&](const Words& option) { return identify({"free.csv"}, with(numbers, option)); };
+  expect(with_option({"--reverse", "wrist"}), {"--reverse", "'wrist'", "elbow"});
+  expect(with_option({"--payload", "0.5,0.1"}), {"--payload", "2 numbers", "KG,X,Y,Z"});
+  expect(with_option({"--payload", "-1"}), {"--payload", "-1 kg", "above 0"});
+  expect(with_option({"--payload", "nan"}), {"--payload"});
+  expect(with_option({"--payload", "1,0,0,99"}), {"--payload", "99 m", "10 m"});
   write("model.toml", "[arm]\njoints = 3\n");
   expect(tactus(with({"estimate", "torque", "free.csv", "--model", "model.toml"}, numbers)), {"model.toml", "joint_1"});
   EXPECT_EQ(tactus({"identify", "arm", "free.csv", "--urdf", example("three-joints.urdf")}).status, 2);

@@ -41,7 +41,7 @@ struct Beliefs {
 /// What is true.
 Beliefs truth_of(const ShippedPair& pair);
 
-/// Arms both, as a program does: align, arm, dead-man switch. A hand that holds an arm lets go once the support has
+/// Arms both, as a program does: align, arm, dead-man switch. A hand that holds an arm releases it once the support has
 /// come in. It ends a second after both are active, or after either has released its arm or refused it.
 Arming arm_both(const ShippedPair& pair, Before before, const Beliefs& beliefs);
 /// The pair whose gravity compensation comes in within `blend_s` and is not judged, for the control of a sweep.

@@ -1,7 +1,6 @@
 #include <tactus/data/report/text.hpp>
 #include <tactus/identification/arm/rig_log.hpp>
 #include <tactus/interfaces/cli/arm_options.hpp>
-#include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/streams.hpp>
 #include <tactus/kernel/arm/chain.hpp>
 
@@ -127,15 +126,26 @@ Check reverse(urdf::Arm& arm, const std::string& name) {
 
 /// A point mass on the last link.
 Check load(urdf::Arm& arm, const std::vector<double>& payload) {
+  const auto refused = [](ErrorCode code, std::string message) {
+    return Error{.code = code, .parameter = {}, .message = std::move(message), .place = "--payload"};
+  };
+  if (payload.size() != 1 && payload.size() != 4) {
+    return refused(ErrorCode::syntax, std::to_string(payload.size()) +
+                                          " numbers are neither a mass nor a mass and its place: write KG or KG,X,Y,Z");
+  }
   const double mass_kg = payload.front();
-  if (!(mass_kg > 0.0) || !(mass_kg < 1e4)) {
-    return Error{.code = ErrorCode::out_of_bounds,
-                 .parameter = {},
-                 .message = "a payload of " + report::number(mass_kg, 3) + " kg must be above 0 and below 10000 kg",
-                 .place = "--payload"};
+  constexpr double heaviest_kg = 1e4, farthest_m = 10.0;
+  if (!(mass_kg > 0.0) || mass_kg > heaviest_kg) {
+    return refused(ErrorCode::out_of_bounds,
+                   rounded_number(mass_kg) + " kg must be above 0 and at most " + rounded_number(heaviest_kg) + " kg");
   }
   arm::Vector3 at = arm.frames.back().back().origin_m;
   if (payload.size() == 4) at = {payload[1], payload[2], payload[3]};
+  if (!(at.norm() <= farthest_m)) {
+    return refused(ErrorCode::out_of_bounds, "a place " + rounded_number(at.norm()) +
+                                                 " m from the last link must be at most " + rounded_number(farthest_m) +
+                                                 " m away: write metres");
+  }
   arm::Body& body = arm.params.joints[arm.params.joints.size() - 1].body;
   arm::BodyVector sums = arm::linear_parameters(body);
   sums[0] += mass_kg;
@@ -208,8 +218,7 @@ void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options, bool finds_gr
           "link; at the tip by default")
       ->type_name("KG[,X,Y,Z]")
       ->delimiter(',')
-      ->expected(1, 4)
-      ->check(real_between(-1e4, 1e4));
+      ->allow_extra_args(false);
 }
 
 void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help) {
