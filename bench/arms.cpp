@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // bench_arms [EXPERIMENT.toml]: what a tick of both sites of two arms takes, a step of a simulated arm, and the pair
 // with person and wall in virtual time; then the whole tick of a rig's pair, supervised and behind its walls, joint by
 // joint and as two arms.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/estimators/disturbance_observer.hpp>
 #include <tactus/kernel/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/kernel/control/estimators/kalman_force_estimator.hpp>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Frequency responses from five minutes at 5 kHz: tactus beside SciPy, in turns in one run.
 
     cmake --build --preset release --target bench_frequency_response

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops on SIMD lanes against the same loop alone, against Boost.odeint on the same lanes and against the most that the
 // machine can multiply and add; maps on one and two threads. Only ratios of one run: a shared machine drifts. Every
 // loop runs the same tap with cancellation, so ticks per second compare directly.

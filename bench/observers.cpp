@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same real-time loop with observers, with none, and beside a load that has nothing to do with it, in alternating
 // windows: scripts/compare-with-observers.
 #include <tactus/data/configuration/document.hpp>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The parts of tactus that can be left out. A component is a folder of modules, and builds on other components; it finds
 # the libraries of its own modules alone. `kernel` needs Eigen and no operating system. scripts/install-deps names the
 # packages of each.

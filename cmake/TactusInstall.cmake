@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` leaves behind: a package that find_package(tactus) finds, the `tactus` command and the
 # experiments.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What is installed beside the `tactus` command.
 
 # What completes it in bash, and man pages where help2man is there: both are made by the command itself.

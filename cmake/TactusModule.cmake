@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # tactus_module(NAME [HEADERS_ONLY] [LIGHT | WORDS] [TYPES_MEMORY] [SOURCES file...] [LINK target...] [LINK_PRIVATE target...])
 #
 # Declares the library target tactus::NAME from the current folder, tactus/COMPONENT/FOLDER. Headers sit beside their

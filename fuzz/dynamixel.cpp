@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/dynamixel/dynamixel_bus.hpp>
 #include <tactus/hardware/emulation/dynamixel/dynamixel_peer.hpp>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Puts libtactus.so into the package, and names the wheel after the platform and no version of Python.
 
 The library is the file that TACTUS_LIBRARY names, or that of ../build/release.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Fails where a page of the built site has a link that leads nowhere, an anchor that its target does not have, a path that works
 at the root of a host only, or anything that a browser would fetch from another host.
 

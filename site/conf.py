@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # How Sphinx makes the site. Run by site/build, which prepares the pages first (site/stage.py).
 import os
 import re

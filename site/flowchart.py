@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Flowcharts of the pages, written in the part of Mermaid that they use, as Graphviz draws them: Sphinx draws those without a
 program from elsewhere, and the reader's browser needs no script."""
 import re

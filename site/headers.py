@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Prepares Doxygen's XML for Breathe, which shows a header by `doxygenfile`.
 
   site/headers.py FOLDER

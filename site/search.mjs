@@ -1,4 +1,5 @@
 #!/usr/bin/env node
+// SPDX-License-Identifier: Apache-2.0
 // Asks the search of the built site questions that people have, and fails where the page that answers is not among the first
 // results. It runs the site's own search, scripts and index, as a browser does.
 //

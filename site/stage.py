@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Prepares the pages of the repository for Sphinx.
 
   site/stage.py FOLDER XML

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes what Debian 12 ships of the theme Furo work from a folder of its own.
 
   site/theme.py FOLDER

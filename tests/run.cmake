@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Included by the checks in this folder.
 
 # Runs a command, leaves what it printed in `output`, and ends the check with that where the command fails.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Whether this is built with a sanitizer, 0 or 1: GCC and clang say it each in a way of its own.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/stages/cancellation.hpp>
 #include <tactus/kernel/mechanics/cable_driven_master.hpp>
 #include <tactus/kernel/mechanics/operator.hpp>

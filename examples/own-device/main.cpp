@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/command.hpp>
 #include <tactus/kernel/station/device_registry.hpp>
 

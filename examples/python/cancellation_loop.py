@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A control loop of your own around `tactus.Cancellation`, in Python.
 
 A hand moves a simulated leader, one mass on the spring and the damper of the hand, at 50 mm/s. Ten times a second an impact

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the three recordings of one axis in this folder: axis-free-motion.csv, axis-contact.csv and axis-held.csv.
 
 Simulated, not measured: a carriage of 0.8 kg with viscous friction of 4 N s/m and Coulomb friction of 0.6 N that sticks,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keeps the underscores of the distribution's name.
 
 LeRobot finds plug-ins by the name in the metadata of installed distributions, and imports that very name. setuptools writes

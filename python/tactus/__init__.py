@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """tactus: crisp and stable force-reflecting teleoperation, from Python.
 
 Numbers have their unit in their name, keyword arguments are the keys of the files, and exceptions have the messages of the

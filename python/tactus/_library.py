@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C library behind this package: where it is, its structs and its functions (tactus.h)."""
 
 from __future__ import annotations

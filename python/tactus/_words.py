@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keyword arguments as the words of a command line."""
 
 from __future__ import annotations

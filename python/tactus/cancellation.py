@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cancellation of induced leader motion, for a control loop of your own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands of tactus as functions. Each returns what the command prints with `--json`."""
 
 from __future__ import annotations

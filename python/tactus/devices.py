@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arms and handles whose driver is written in Python."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What tactus raises. The text of an exception is what the `tactus` command prints."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs and recordings as dictionaries of arrays."""
 
 from __future__ import annotations

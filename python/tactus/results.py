@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Results as records: members as attributes, lists of numbers as arrays."""
 
 from __future__ import annotations

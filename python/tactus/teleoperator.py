@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A running pair of leader and follower: your program has the screen, tactus has the servo thread."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arms in the place of a vendor's library, in Python: two joints behind a call that blocks."""
 
 import os

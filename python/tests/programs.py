@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests have in common: the `tactus` command, the folders of the project, and a folder of their own."""
 
 import json

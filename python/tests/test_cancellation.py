@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A cancellation from Python is the loop of the C++ library."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command's result from Python is its JSON."""
 
 import json

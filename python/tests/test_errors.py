@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every error is the command's message, on the bad input of tests/cli."""
 
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs, the import, and what needs packages that may be missing."""
 
 import csv

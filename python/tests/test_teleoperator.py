@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A running pair, with arms whose driver is written in Python."""
 
 import ctypes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // best_gain EXPERIMENT RIG MODEL [--exact] [--taps N] [--set KEY=VALUE]...
 //
 // The largest force gain that any method of `tactus advise` reaches on the rig of the file RIG, by trying them all on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/arm/random_arm.hpp"
 #include <gtest/gtest.h>
 #include <kdl/chain.hpp>

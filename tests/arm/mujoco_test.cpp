@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/arm/mujoco_arm.hpp"
 #include "tests/arm/random_arm.hpp"
 #include <gtest/gtest.h>

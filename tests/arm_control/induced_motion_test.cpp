@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/induced_motion.hpp>
 #include <tactus/simulation/arm_plants/tool_operator.hpp>
 

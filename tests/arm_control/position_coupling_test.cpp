@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/position_coupling.hpp>
 #include <tactus/simulation/arm_plants/arm_plant.hpp>
 

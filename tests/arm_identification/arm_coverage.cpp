@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // arm_coverage FIRST LAST: identifies simulated arms (tests/arm_identification/exact_arm.hpp), one for each seed from
 // FIRST to LAST, and prints how many of the 95 % intervals hold what the simulation has, for each kind of parameter.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/arm/external_torque.hpp>
 #include <tactus/identification/arm/fit.hpp>
 

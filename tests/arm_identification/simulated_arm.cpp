@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // simulated_arm FOLDER: writes the recordings of a simulated arm that docs/how-to/identify-an-arm.md works on, and its
 // URDF: the first three joints of tests/arm_identification/kdl_arm.hpp, sampled at 100 Hz.
 

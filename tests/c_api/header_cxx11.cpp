@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "use_header.h"
 
 extern "C" int use_tactus_from_cxx11();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A random sequence of calls of the C interface from four threads: `test_random_calls CALLS [SEED]`. Each thread has
 // handles of its own, uses released ones and numbers of no handle, and all share one pair that runs, of arms behind
 // function pointers. The program is for the sanitizers; it fails where a call returns a status that it may not.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #ifndef TACTUS_USE_HEADER_H
 #define TACTUS_USE_HEADER_H
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/motor_bus_device.hpp>
 #include <tactus/interfaces/cli/guard_page.hpp>
 #include <tactus/interfaces/cli/guarded_link.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/urdf/urdf.hpp>
 #include <tactus/identification/arm/model.hpp>
 #include <tactus/interfaces/cli/command.hpp>

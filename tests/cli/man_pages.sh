@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # man_pages.sh TACTUS SCRIPT FOLDER: SCRIPT makes the man pages of TACTUS, and they say what its help does.
 set -eu
 rm -rf "$3"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every component configures alone, with those on which it builds, and finds the libraries of these alone; so does what is
 # left when one is left out. `kernel` is built and installed, and a loop around cancellation builds against it and runs.
 # SOURCE is the source folder of tactus, SCRATCH a folder to work in; GENERATOR, COMPILER and BUILD_TYPE as in the build.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs what BUILD holds into SCRATCH/prefix, and builds and runs the programs of this folder and the examples
 # against it.
 # GENERATOR, COMPILER and BUILD_TYPE are those of BUILD; SOURCE is the source folder of tactus.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # own_arm.sh TACTUS PLUGIN EXAMPLES FOLDER: two arms of the driver of examples/own-arm are checked and coupled; a driver that
 # throws and one that blocks for 100 ms end in hold with zero force and the reason. Then each arm is driven by a program of
 # its own; the follower's is killed, and the leader holds.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # own_device.sh PROGRAM EXPERIMENT FOLDER: the example's device at both sites, in one process, and each in a process of
 # its own, over the loopback. Both must follow for seconds, and the wall must be felt.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/architecture.hpp>
 #include <tactus/kernel/control/architectures/four_channel.hpp>
 

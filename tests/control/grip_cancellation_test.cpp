@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/stages/grip_cancellation.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the online estimate of a hand is from what its signals hold. Run alone, it prints the table of
 // docs/theory/changing-grip.md:
 //

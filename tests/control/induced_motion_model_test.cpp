@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/model/induced_motion_model.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/estimators/inverse_model_estimator.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/force_sensor_check.hpp>
 #include <tactus/kernel/control/message_follower.hpp>
 #include <tactus/kernel/control/supervised_site.hpp>

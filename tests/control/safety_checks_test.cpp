@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/encoder_check.hpp>
 #include <tactus/kernel/control/force_sensor_check.hpp>
 #include <tactus/kernel/control/packet.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/safety_gate.hpp>
 #include <tactus/kernel/control/stopping_brake.hpp>
 

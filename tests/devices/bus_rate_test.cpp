@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/bus_thread.hpp>
 #include <tactus/hardware/devices/damiao/damiao_bus.hpp>
 #include <tactus/hardware/devices/dynamixel/dynamixel_bus.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/known_cause.hpp"
 
 #include <tactus/kernel/signal/random.hpp>

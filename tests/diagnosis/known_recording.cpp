@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // known_recording CAUSE STRENGTH SEED: prints as a table what a user would have recorded of a simulated teleoperator
 // that shakes for a known reason. CAUSE is the word of a diagnosis, STRENGTH quiet, near or clear.
 

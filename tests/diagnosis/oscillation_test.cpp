@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/diagnosis/evidence.hpp>
 #include <tactus/identification/diagnosis/oscillation.hpp>
 #include <tactus/kernel/signal/random.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/telemetry/log_writer.hpp>
 #include <tactus/identification/diagnosis/signals.hpp>
 #include <tactus/runtime/servo/site_record.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/diagnosis/columns.hpp>
 #include <tactus/identification/diagnosis/signals.hpp>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D TACTUS=<command> -D FOLDER=<of the reference pages> -P every_kind.cmake
 #
 # Fails unless each kind of experiment that the command knows has a page in FOLDER.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Fails where a link between pages leads nowhere, where docs/README.md does not list a page, where README.md is longer than
 a page (900 words, as `wc -w` counts them), and where CITATION.cff has another version than the project."""
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D PAGE=<page> -D FILE=<file> -D LANGUAGE=<of the block> -P quoted.cmake
 #
 # Fails unless PAGE quotes FILE in full, word for word.

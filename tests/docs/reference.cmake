@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D TACTUS=<command> -D KIND=<experiment> -D PAGE=<page under ROOT> -D ROOT=<source folder> -P reference.cmake
 #
 # Fails, with the first line that differs and the command that mends it, unless PAGE is what the command prints.

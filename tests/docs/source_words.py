@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Fails where a message, a help text or the comment of a public header uses a word that only this project has.
 
   tests/docs/source_words.py [FILE...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D ROOT=<source folder> -P walk.cmake
 #
 # Fails unless each stop of the newcomer's walk in docs/architecture.md is a file that holds the name beside it.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Fails where a page uses a word that only this project has, in place of the word of the field.
 
   tests/docs/words.py [PAGE...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // any_grip EXPERIMENT RIG MODEL [--taps N] [--seed N] [--only WORD]... [--set KEY=VALUE]...
 //
 // Taps on the rig of the file RIG with the controller's model of the file MODEL, in hands that hold more or less firmly

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
 #include <tactus/simulation/experiments/hydraulic_rigid_contact/hydraulic_rigid_contact.hpp>
 

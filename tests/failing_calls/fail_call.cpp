@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For LD_PRELOAD: makes one call of a program fail, as a full disk, a lack of memory or a signal would.
 //
 //   TACTUS_FAIL_SITES=FILE          appends a line "function site" to FILE when a function is first called from a site

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/nonlinear_fit.hpp>
 #include <tactus/kernel/signal/random.hpp>
 

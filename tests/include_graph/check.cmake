@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D ROOT=<folder that holds tactus/> -P check.cmake
 #
 # Reads every #include of the library and fails when one breaks a rule of the layers, which ROOT/cmake/TactusComponents.cmake

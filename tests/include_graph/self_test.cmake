@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The include check must find each mistake that the folder `broken` holds, and nothing else.
 cmake_minimum_required(VERSION 3.25)
 

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # check.sh PROGRAM SCRATCH: what or_inconclusive does where the machine is on time and where it is late.
 set -eu
 program=$1

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # light_session.sh SCRIPT SCRATCH: what scripts/in-light-session promises.
 set -eu
 script=$1

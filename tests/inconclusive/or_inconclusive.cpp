@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // or_inconclusive PROGRAM [ARGUMENT...]: runs a real-time test. Where the test fails and the machine was late or busy
 // meanwhile, it is run again, up to three times in all. If that was so each time, the result is neither a pass nor a
 // failure: the status is 77, which CTest shows as skipped, and the last line starts with "inconclusive". A test that

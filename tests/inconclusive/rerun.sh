@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # rerun.sh SCRIPT CMAKE SCRATCH: what scripts/rerun-inconclusive does with tests that are inconclusive once, always, or fail
 # afterwards, and with one that is skipped for a reason of its own.
 set -eu

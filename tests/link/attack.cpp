@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // attack_handshake [HAND-SHAKES [PER_SECOND]]: so many hand-shakes of two sites under each kind of hostile packet,
 // toward the slave, the master and both, so many a second. Prints how long they took. Status 1 where one failed.
 #include <algorithm>

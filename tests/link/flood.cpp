@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // flood_link [PACKETS [PER_SECOND]]: an encrypted link of two sites at 5 kHz, and an attacker on the way who sends so
 // many hostile packets to the slave. Windows of a second take turns: quiet, the same flood to a port that has nothing
 // to do with the link, the flood. Prints what was accepted, the slave's time for receiving and sending in a tick, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/live/contact_judge.hpp>
 #include <tactus/simulation/experiments/contact_metrics.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/mechanics/bouc_wen.hpp>
 #include <tactus/kernel/mechanics/elasto_slip.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/mechanics/amplifier.hpp>
 #include <tactus/kernel/mechanics/encoder.hpp>
 #include <tactus/kernel/mechanics/force_sensor.hpp>

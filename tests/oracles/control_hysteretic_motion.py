@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/control/hysteretic_model_test.cpp: where displayed impacts move the motor of the full model, with the
 hysteretic linkage, the quintic hand and friction, for a hand at rest and for two intended velocities.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/control/induced_motion_model_test.cpp: where a displayed force moves the motor of the model, quintic
 spring and friction included, for a hand at rest and for two intended velocities.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/control/force_observers_test.cpp: the steady gain of a Kalman filter for position, velocity and force
 of a slave, from SciPy's solver of the discrete Riccati equation and quadrature of the process noise.
 

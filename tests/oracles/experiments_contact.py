@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/simulation/contact_metrics_test.cpp: SciPy's Butterworth high-pass and the definition of settling,
 on transients that the test makes again from the columns on the left.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/identification/frequency_response_test.cpp: SciPy's welch, csd, coherence and rfft, and the same by
 Octave's pwelch and fft, on one noisy pair of signals at 5 kHz.
 

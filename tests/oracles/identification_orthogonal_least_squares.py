@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/identification/narx_fit_test.cpp: the order and the error reduction ratios of forward regression.
 
 Written without orthogonalisation: each round refits every candidate together with those chosen by NumPy's least squares

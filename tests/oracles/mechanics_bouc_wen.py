@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/mechanics/hysteresis_test.cpp: the Bouc-Wen equation integrated in time by SciPy's LSODA.
 
 Deflection: two sines of unequal frequency, so that minor loops and reversals at every depth occur.

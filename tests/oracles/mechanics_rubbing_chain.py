@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/mechanics/cable_chain_test.cpp: the master's chain in a hand, with friction, pushed now and then.
 
 Run in this folder: python3 mechanics_rubbing_chain.py > mechanics_rubbing_chain.csv

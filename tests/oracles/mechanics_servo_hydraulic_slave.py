@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/mechanics/servo_hydraulic_slave_test.cpp: valve and cylinder without dry friction, by SciPy's LSODA.
 
 The equations are written from Merritt's book, with the defaults of the code; two sines drive the valve.

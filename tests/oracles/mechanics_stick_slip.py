@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/mechanics/friction_test.cpp: a mass on a spring whose far end is moved, with Coulomb friction.
 
 The motion is integrated piece by piece, sliding either way or sticking, with SciPy's DOP853 and event location: no time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Three masses on a line, two of which rub, under a force that is held from sample to sample: a part of the oracles that
 have Coulomb friction in them.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/signal/filters_test.cpp: SciPy's own designs and lfilter on one noisy signal at 5 kHz.
 
 Run in this folder: python3 signal_filters.py > signal_filters.csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/signal/predictors_test.cpp: taps of polynomial extrapolation from SciPy's Savitzky-Golay design, and
 gains of the Kalman filter of constant velocity or acceleration from its solver of the discrete Riccati equation.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/signal/random_test.cpp: the generators written again in Python's unbounded integers.
 
 Run in this folder: python3 signal_random.py > signal_random.csv

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Oracle of tests/simulation/delayed_slave_test.cpp: SciPy's matrix exponential with the command of the past linear in
 each step of 10 us (the test's own integrator is Runge-Kutta with Hermite interpolation), delays separate in actuator
 and sensor.

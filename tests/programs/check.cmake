@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D ROOT=<source folder> -D LIST=<programs.txt> -P check.cmake
 #
 # Fails where a package of LIST is not one of scripts/install-deps, or where a file of the tests starts a program by a path

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/real_time/plant_server.hpp>
 #include <tactus/simulation/real_time/real_time_tap.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/urdf/urdf.hpp>
 #include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
 #include <tactus/simulation/arm_plants/arm_plant.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/real_time/shared_plant_test.hpp"
 
 #include <tactus/simulation/real_time/plant_server.hpp>

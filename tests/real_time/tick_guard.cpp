@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/real_time/tick_guard.hpp"
 
 #include <cerrno>

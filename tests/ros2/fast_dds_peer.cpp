@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ros2/fast_dds_peer.hpp"
 
 #include <cstring>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """type_hashes.py IDL HEADER: the ROS 2 type hashes (RIHS01) in HEADER are those of the messages that IDL defines.
 
 A hash is the SHA-256 of the message's description as JSON, the descriptions of all that it refers to sorted by name

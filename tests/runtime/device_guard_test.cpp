@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/signal/random.hpp>
 #include <tactus/kernel/station/device_guard.hpp>
 #include <tactus/runtime/servo/shared_device.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/runtime/servo/site_buttons.hpp>
 
 #include <string>

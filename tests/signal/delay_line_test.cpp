@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/signal/delay_line.hpp>
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/cancellation_model.hpp>
 #include <tactus/identification/axis/isolation.hpp>
 #include <tactus/identification/axis/isolation_figures.hpp>

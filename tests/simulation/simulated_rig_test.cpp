@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/excitation.hpp>
 #include <tactus/simulation/teleoperator/simulated_rig.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // virtual_day [HOURS [ARCHITECTURE]]: two supervised sites at 5 kHz for 24 h of virtual time, or so many, over the
 // link's codec, without a fault: a person taps and presses all the time. Every hour and at the end the run must be what
 // it was in the first. Prints what came out; status 1 where anything differs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every counter of a pair of sites, a second before it would wrap or reach its limit.
 #include <tactus/runtime/link/packet_filter.hpp>
 #include <tactus/runtime/link/secure_channel.hpp>

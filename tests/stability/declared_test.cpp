@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/declared.hpp>
 #include <tactus/analysis/stability/loop.hpp>
 #include <tactus/analysis/stability/map_point.hpp>

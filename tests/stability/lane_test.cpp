@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/lane_memory.hpp>
 #include <tactus/analysis/stability/map_point.hpp>
 #include <tactus/kernel/mechanics/minimum_jerk.hpp>

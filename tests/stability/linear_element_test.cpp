@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/linear_element.hpp>
 #include <tactus/analysis/stability/loop.hpp>
 #include <tactus/kernel/mechanics/cable_chain.hpp>

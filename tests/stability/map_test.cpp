@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/map.hpp>
 #include <tactus/analysis/stability/map_file.hpp>
 #include <tactus/analysis/stability/map_hdf5.hpp>

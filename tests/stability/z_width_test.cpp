@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/state_space.hpp>
 #include <tactus/analysis/stability/z_width.hpp>
 

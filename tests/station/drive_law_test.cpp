@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/drive_law.hpp>
 #include <tactus/kernel/signal/random.hpp>
 #include <tactus/kernel/station/device_guard.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/station/joined_devices.hpp>
 #include <tactus/kernel/station/local_teleoperator.hpp>
 

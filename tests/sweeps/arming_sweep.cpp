@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // arming_sweep [WRONG [SEED [RIGHT [all]]]]: arms so many wrong and so many nearly right pairs of arms in virtual time,
 // 500 each with seed 2 unless stated otherwise. Prints what became of them, and every one that broke a rule; with `all`
 // every one. As a control, a tenth of the wrong ones are armed without judgement. Status 1 where a joint of a wrong

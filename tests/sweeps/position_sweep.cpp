@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // position_sweep [RUNS [SEED [HOURS]]]: a wrong position at a joint of a shipped rig file, so many times, every fault
 // at every joint once unless stated otherwise; then so many hours of true positions over all rig files, 1 unless stated
 // otherwise; in between, as a control, a tenth of the wrong ones without the check. Prints every run that broke the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/recording/recording.hpp>
 #include <tactus/data/telemetry/episodes.hpp>
 #include <tactus/data/telemetry/export.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/telemetry/log_reader.hpp>
 #include <tactus/data/telemetry/mcap_format.hpp>
 #include <tactus/data/telemetry/recorder.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The native side of the comparison with WebAssembly (web/tests/unit/kernel.test.ts): runs every tap of an experiment
 // through the interface of web/kernel, as the browser does.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # One wrong use: SOURCE compiles as it stands, and with TACTUS_WRONG_USE defined the compiler refuses it for the reason
 # that MESSAGE (a regular expression) describes. COMPILER and INCLUDES say how to compile.
 cmake_minimum_required(VERSION 3.25)

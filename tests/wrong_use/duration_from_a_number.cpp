@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/core/units.hpp>
 
 double sample_rate_Hz(tactus::Seconds sample_time) { return 1.0 / sample_time.value; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { column, ofSide, rowLength, verdicts, type Side, type Verdict } from '../kernel/kernel';
 
 /** How long of a contact is kept, and in what steps. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Side } from '../kernel/kernel';
 import { Contact, sentence } from './contact';
 import { kinds, type Kind, type Knob } from './kinds';

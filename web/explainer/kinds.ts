@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** The three figures: what each one shows, and what the reader can change. */
 import type { Side } from '../kernel/kernel';
 import type { Setting } from './orders';

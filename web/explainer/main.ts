@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import '../src/base.css';
 import './explainer.css';
 import { TactusFigure } from './figure';

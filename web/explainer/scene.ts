@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Contact } from './contact';
 
 /** One machine, drawn: your hand and handle, the robot finger, the wall, and the force on your hand. */

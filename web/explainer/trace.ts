@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { step_s, window_s, type Contact } from './contact';
 
 /** The force on the wall in the quarter of a second after the touch. */

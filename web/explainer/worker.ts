@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Runs the loops in real time: a thread of its own, so that the page can be slow without a control cycle being late. */
 import experiment from '../../experiments/tapping.toml';
 import { Kernel, sides } from '../kernel/kernel';

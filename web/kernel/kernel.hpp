@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// The interface of the kernel for a browser, or any other program that calls C: two teleoperators of one axis under

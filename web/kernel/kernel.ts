@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** The loops of the live page, compiled to WebAssembly (kernel.hpp says what each function does). */
 
 interface Exports {

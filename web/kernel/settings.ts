@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { parse } from 'smol-toml';
 
 export type Setting = readonly [key: string, value: number | string | boolean];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { armKeys, axisKeys, dragWithPointer, moveWithKeys, type Place } from './operator/inputs';
 import { axisReach, type Hand, type HandPoint } from './operator/hand';
 import { Plot, type PlotData } from './plots/plot';

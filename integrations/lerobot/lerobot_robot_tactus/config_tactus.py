@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What LeRobot's command line and files state of the pair. Both configurations name the same files."""
 
 from __future__ import annotations

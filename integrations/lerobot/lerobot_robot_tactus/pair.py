@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pair that robot and teleoperator share: it is started by the first that connects and stopped by the last."""
 
 from __future__ import annotations

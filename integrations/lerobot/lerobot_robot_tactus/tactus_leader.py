@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The leader as a teleoperator of LeRobot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plug-in in a small stand-in for LeRobot's recording loop, with the emulated motors of two arms in the place of real
 ones. Each motor turns a joint of its own, without weight, and nobody moves the leader.
 

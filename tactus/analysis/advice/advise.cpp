@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/advice/advise.hpp>
 #include <tactus/simulation/experiments/contest/contest.hpp>
 #include <tactus/simulation/teleoperator/parallel.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/advice/advise.hpp>
 #include <tactus/analysis/advice/arm_advise.hpp>
 #include <tactus/analysis/advice/arm_trial.hpp>

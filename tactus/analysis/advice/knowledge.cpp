@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/advice/knowledge.hpp>
 #include <tactus/data/report/json.hpp>
 #include <tactus/kernel/signal/decompositions.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/advice/methods.hpp>
 #include <tactus/kernel/control/stages/hand_force_compensation.hpp>
 #include <tactus/simulation/experiments/presentation.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/advice/presentation.hpp>
 #include <tactus/data/configuration/text.hpp>
 #include <tactus/data/report/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/advice/trial.hpp>
 #include <tactus/simulation/experiments/contest/contest.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/arm_stability/arm_map.hpp>
 #include <tactus/analysis/arm_stability/internal/mode_json.hpp>
 #include <tactus/data/report/json.hpp>

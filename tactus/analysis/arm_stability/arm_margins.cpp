@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/arm_stability/arm_margins.hpp>
 #include <tactus/kernel/signal/decompositions.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/arm_stability/arm_point.hpp>
 #include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/bonded_run.hpp>
 #include <tactus/analysis/stability/linear_plant.hpp>
 

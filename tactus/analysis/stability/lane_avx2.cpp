@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/lane_block.hpp>
 #include <tactus/analysis/stability/lane_targets.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/linear_element.hpp>
 #include <tactus/kernel/signal/decompositions.hpp>
 #include <tactus/kernel/signal/random.hpp>

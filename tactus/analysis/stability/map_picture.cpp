@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/map_picture.hpp>
 #include <tactus/data/report/text.hpp>
 #include <tactus/simulation/experiments/presentation.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/map_picture.hpp>
 #include <tactus/analysis/stability/map_report.hpp>
 #include <tactus/data/configuration/toml_writer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/angle.hpp>
 #include <tactus/analysis/stability/scorecard.hpp>
 #include <tactus/analysis/stability/scorecard_report.hpp>

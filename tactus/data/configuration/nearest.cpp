@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/nearest.hpp>
 #include <tactus/kernel/core/spelling.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/reference.hpp>
 #include <tactus/data/configuration/text.hpp>
 #include <tactus/data/configuration/toml_writer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/text.hpp>
 #include <tactus/data/configuration/toml_reader.hpp>
 #include <tactus/kernel/core/binding.hpp>

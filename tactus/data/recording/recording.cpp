@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/recording/csv_file.hpp>
 #include <tactus/data/recording/mat_file.hpp>
 #include <tactus/data/recording/names.hpp>

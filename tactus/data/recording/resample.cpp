@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/recording/names.hpp>
 #include <tactus/data/recording/resample.hpp>
 #include <tactus/kernel/core/parameters.hpp>

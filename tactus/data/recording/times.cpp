@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/recording/names.hpp>
 #include <tactus/data/recording/times.hpp>
 #include <tactus/data/recording/unit_words.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/curve.hpp>
 #include <tactus/data/report/figure.hpp>
 #include <tactus/data/report/layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/heat_map.hpp>
 #include <tactus/data/report/palette.hpp>
 #include <tactus/data/report/text.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/shared_limits.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/files.hpp>
 #include <tactus/data/telemetry/export.hpp>
 #include <tactus/data/telemetry/export_parts.hpp>

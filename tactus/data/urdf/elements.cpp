@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/recording/file_bytes.hpp>
 #include <tactus/data/urdf/elements.hpp>
 #include <tactus/data/urdf/urdf.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/arm/first_look.hpp>
 #include <tactus/identification/arm/fit.hpp>
 #include <tactus/identification/arm/rows_fit.hpp>

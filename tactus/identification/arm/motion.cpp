@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/arm/motion.hpp>
 #include <tactus/identification/axis/refusal.hpp>
 #include <tactus/identification/axis/zero_phase.hpp>

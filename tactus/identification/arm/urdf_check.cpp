@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/arm/rows_fit.hpp>
 #include <tactus/identification/arm/urdf_check.hpp>
 #include <tactus/kernel/signal/decompositions.hpp>

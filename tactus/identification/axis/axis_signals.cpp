@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/identification/axis/axis_signals.hpp>
 #include <tactus/identification/axis/refusal.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/inverse_dynamics.hpp>
 #include <tactus/identification/axis/linear_fit.hpp>
 #include <tactus/identification/axis/refusal.hpp>

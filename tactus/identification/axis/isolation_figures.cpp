@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/identification/axis/frequency_response.hpp>
 #include <tactus/identification/axis/isolation_figures.hpp>

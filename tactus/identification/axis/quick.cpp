@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/excitation.hpp>
 #include <tactus/identification/axis/quick.hpp>
 #include <tactus/kernel/signal/random.hpp>

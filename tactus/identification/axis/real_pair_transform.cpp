@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/real_pair_transform.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/diagnosis/loop_gain.hpp>
 
 #include <algorithm>

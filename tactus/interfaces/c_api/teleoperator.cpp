@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/c_api/internal/errors.hpp>
 #include <tactus/interfaces/c_api/internal/handles.hpp>
 #include <tactus/interfaces/cli/rig_session.hpp>

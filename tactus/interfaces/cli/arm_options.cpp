@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/identification/arm/rig_log.hpp>
 #include <tactus/interfaces/cli/arm_options.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/hardware/devices/rig/probe.hpp>
 #include <tactus/interfaces/cli/device.hpp>

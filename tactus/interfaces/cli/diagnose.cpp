@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/diagnosis/report.hpp>
 #include <tactus/interfaces/cli/commands.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/json.hpp>
 #include <tactus/data/report/page.hpp>
 #include <tactus/data/report/table.hpp>

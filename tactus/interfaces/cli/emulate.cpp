@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/wire/port.hpp>
 #include <tactus/hardware/wire/talk.hpp>
 #include <tactus/interfaces/cli/commands.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/emulate_live.hpp>
 
 #include <bit>

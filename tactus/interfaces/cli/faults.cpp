@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/interfaces/cli/commands.hpp>
 #include <tactus/interfaces/cli/experiment_options.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// The words between a program that drives motors and its guard, and the guard's side of them.

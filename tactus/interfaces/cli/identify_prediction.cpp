@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/data/recording/recording.hpp>
 #include <tactus/data/report/json.hpp>

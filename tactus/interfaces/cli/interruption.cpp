@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/interruption.hpp>
 #include <tactus/interfaces/cli/quiet_thread.hpp>
 #include <tactus/interfaces/cli/streams.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/json_writer.hpp>
 #include <tactus/data/report/json.hpp>
 #include <tactus/interfaces/cli/json_option.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/figure.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
 #include <tactus/interfaces/cli/standard_output.hpp>

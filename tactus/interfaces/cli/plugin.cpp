@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/plugin/plugin.hpp>
 #include <tactus/interfaces/cli/plugin.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
 #include <tactus/hardware/emulation/dynamixel/dynamixel_peer.hpp>

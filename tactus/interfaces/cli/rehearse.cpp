@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/hardware/devices/rig/rig.hpp>
 #include <tactus/interfaces/cli/commands.hpp>

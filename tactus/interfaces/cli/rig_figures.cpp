@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/text.hpp>
 #include <tactus/data/telemetry/wide_table.hpp>
 #include <tactus/interfaces/cli/rig_figures.hpp>

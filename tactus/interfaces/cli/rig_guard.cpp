@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/guard_post.hpp>
 #include <tactus/interfaces/cli/rig_guard.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/interruption.hpp>
 #include <tactus/interfaces/cli/line_writer.hpp>
 #include <tactus/interfaces/cli/operator_input.hpp>

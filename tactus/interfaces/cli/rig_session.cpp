@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/quiet_thread.hpp>
 #include <tactus/interfaces/cli/rig_drive.hpp>
 #include <tactus/interfaces/cli/rig_report.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/files.hpp>
 #include <tactus/data/telemetry/recorder.hpp>
 #include <tactus/interfaces/cli/commands.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/arm_stability/arm_margins_report.hpp>
 #include <tactus/interfaces/cli/stability.hpp>
 #include <tactus/interfaces/cli/stability_command.hpp>

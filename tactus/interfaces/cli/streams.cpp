@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/cli/in_process.hpp>
 #include <tactus/interfaces/cli/internal/command_words.hpp>
 #include <tactus/interfaces/cli/printable_output.hpp>

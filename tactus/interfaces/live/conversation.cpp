@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/live/conversation.hpp>
 #include <tactus/kernel/core/version.hpp>
 

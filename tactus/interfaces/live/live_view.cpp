@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/telemetry/cdr.hpp>
 #include <tactus/data/telemetry/description.hpp>
 #include <tactus/interfaces/live/arm_loop.hpp>

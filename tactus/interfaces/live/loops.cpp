@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/interfaces/live/arm_loop.hpp>
 #include <tactus/interfaces/live/axis_loop.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/telemetry/description.hpp>
 #include <tactus/interfaces/live/cdr_writer.hpp>
 #include <tactus/interfaces/live/messages.hpp>

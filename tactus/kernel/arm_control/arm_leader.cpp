@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/arm_leader.hpp>
 #include <tactus/kernel/arm_control/effort_limits.hpp>
 #include <tactus/kernel/arm_control/joint_cutoff.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/elastic_torque_observer.hpp>
 #include <tactus/kernel/signal/checks.hpp>
 #include <tactus/kernel/signal/matrix_functions.hpp>

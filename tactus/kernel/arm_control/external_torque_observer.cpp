@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/external_torque_observer.hpp>
 #include <tactus/kernel/arm_control/joint_cutoff.hpp>
 

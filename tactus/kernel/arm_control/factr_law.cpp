@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/factr_law.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/four_channel.hpp>
 
 #include <algorithm>

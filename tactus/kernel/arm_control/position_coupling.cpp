@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/position_coupling.hpp>
 #include <tactus/kernel/signal/decompositions.hpp>
 #include <tactus/kernel/signal/matrix_functions.hpp>

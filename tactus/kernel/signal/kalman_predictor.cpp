@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/signal/checks.hpp>
 #include <tactus/kernel/signal/kalman_predictor.hpp>
 #include <tactus/kernel/signal/steady_kalman.hpp>

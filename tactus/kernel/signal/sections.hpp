@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// The arithmetic of the linear filters, apart from how a frequency becomes coefficients.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/force_gate.hpp>
 #include <tactus/kernel/station/device_guard.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/protective_limits.hpp>
 #include <tactus/kernel/station/make_device_guard.hpp>
 

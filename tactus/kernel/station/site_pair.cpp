@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/agreed_parameters.hpp>
 #include <tactus/kernel/station/site_pair.hpp>
 

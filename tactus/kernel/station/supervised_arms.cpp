@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/arm_control/arm_sites.hpp>
 #include <tactus/kernel/control/protective_limits.hpp>
 #include <tactus/kernel/control/support_law.hpp>

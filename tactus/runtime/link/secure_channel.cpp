@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/runtime/link/internal/handshaker.hpp>
 #include <tactus/runtime/link/packet_filter.hpp>
 #include <tactus/runtime/link/secure_channel.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/telemetry/ring.hpp>
 #include <tactus/runtime/ros2/bridge.hpp>
 #include <tactus/runtime/ros2/participant.hpp>

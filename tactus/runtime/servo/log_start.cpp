@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/runtime/servo/log_start.hpp>
 #include <tactus/runtime/servo/servo_thread.hpp>
 

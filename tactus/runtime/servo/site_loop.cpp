@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/station/make_device_guard.hpp>
 #include <tactus/kernel/station/step.hpp>
 #include <tactus/runtime/servo/site_loop.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/arm_plants/arm_device.hpp>
 
 namespace tactus::arm_plants {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/arm_plants/polled_arm.hpp>
 
 #include <algorithm>

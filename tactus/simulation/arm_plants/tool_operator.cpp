@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/arm_plants/tool_operator.hpp>
 
 #include <cmath>

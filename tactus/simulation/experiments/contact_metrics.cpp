@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/signal/root_mean_square.hpp>
 #include <tactus/kernel/signal/second_order_filter.hpp>
 #include <tactus/simulation/experiments/contact_metrics.hpp>

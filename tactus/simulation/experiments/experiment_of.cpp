@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/reference.hpp>
 #include <tactus/simulation/experiments/experiment_of.hpp>
 #include <tactus/simulation/experiments/tapping/tapping.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/runtime/servo/replay_sites.hpp>
 #include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
 #include <tactus/simulation/real_time/replay.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/urdf/described_arms.hpp>
 #include <tactus/runtime/servo/servo_presentation.hpp>
 #include <tactus/runtime/servo/site_log.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/real_time/real_time_tap.hpp>
 
 #include <cmath>

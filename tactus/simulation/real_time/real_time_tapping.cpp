@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/report/files.hpp>
 #include <tactus/data/telemetry/log_writer.hpp>
 #include <tactus/runtime/servo/servo_presentation.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/real_time/simulated_devices.hpp>
 
 namespace tactus::real_time {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/toml_writer.hpp>
 #include <tactus/simulation/real_time/simulated_plant.hpp>
 

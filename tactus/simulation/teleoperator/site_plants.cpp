@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/teleoperator/site_plants.hpp>
 
 namespace tactus::simulation {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # killed.sh TACTUS FOLDER: kill -9 in mid-map, three times, each time a few blocks further; then the same command gives
 # the map of FOLDER/whole, byte for byte.
 set -eu

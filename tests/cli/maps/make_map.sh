@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # make_map.sh TACTUS FOLDER [LAUNCHER...]: the map that all tests of this folder make. The shell becomes the command, so that
 # who kills the one kills the other.
 tactus=$1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # ranks.sh TACTUS FOLDER: two ranks of Open MPI give the map of FOLDER/whole, byte for byte. Exits with 77 where Open
 # MPI is not installed.
 set -eu

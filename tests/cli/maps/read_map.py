@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # python3 read_map.py FOLDER: h5py reads map.h5 of FOLDER: axes with units, and every number equal to that of map.csv.
 # Exits with 77 where h5py is not installed.
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # whole.sh TACTUS FOLDER: makes the map that the other tests of this folder compare with, in FOLDER/whole, by one
 # process that nobody kills.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/motor_link.hpp>
 #include <tactus/hardware/devices/off_watch.hpp>
 #include <tactus/kernel/signal/random.hpp>

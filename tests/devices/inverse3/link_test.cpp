@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/inverse3/inverse3_link.hpp>
 #include <tactus/hardware/devices/inverse3/messages.hpp>
 #include <tactus/hardware/devices/motor_bus_device.hpp>

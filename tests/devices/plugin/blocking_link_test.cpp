@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/motor_bus_device.hpp>
 #include <tactus/hardware/devices/plugin/blocking_link.hpp>
 #include <tactus/hardware/wire/talk.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/hardware/devices/rig/rig_agreement.hpp>
 #include <tactus/simulation/experiments/arm_tapping/arm_pair.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/hardware/devices/rig/bus_kinds.hpp>
 #include <tactus/hardware/devices/rig/examination.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
 #include <tactus/hardware/wire/join.hpp>
 

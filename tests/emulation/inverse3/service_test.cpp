@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/emulation/inverse3/inverse3_server.hpp>
 #include <tactus/hardware/emulation/inverse3/inverse3_service.hpp>
 

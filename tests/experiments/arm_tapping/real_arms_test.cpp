@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/urdf/urdf.hpp>
 #include <tactus/kernel/station/supervised_arms.hpp>
 #include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/agreed_parameters.hpp>
 #include <tactus/simulation/experiments/faults/duty.hpp>
 #include <tactus/simulation/experiments/faults/faulty_configuration.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/faults/injection.hpp>
 #include <tactus/simulation/experiments/faults/table.hpp>
 #include <tactus/simulation/experiments/faults/witness.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/force_display/force_display.hpp>
 
 #include <cmath>

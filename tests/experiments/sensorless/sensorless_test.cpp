@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/experiment.hpp>
 #include <tactus/simulation/experiments/sensorless/presentation.hpp>
 #include <tactus/simulation/experiments/sensorless/sensorless.hpp>

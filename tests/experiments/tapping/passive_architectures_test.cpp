@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/architectures/time_domain_passivity.hpp>
 #include <tactus/simulation/experiments/tapping/tapping.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // node read_recording.mjs RECORDED LOGGED: what mcap-record wrote of `tactus serve` against our own log of the same run,
 // both read by the reader of the MCAP project and decoded by that of Foxglove.
 import assert from "node:assert/strict";

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # record.sh TACTUS FOLDER: lets mcap-record record from `tactus serve` and compares with our log; 77 where the packages
 # are not there.
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # or_skip.sh PACKAGE PROGRAM ARGUMENT...: runs the program. Where it is not installed, or says with a status of 77 that it
 # lacks what the Debian package PACKAGE brings, this says what to install and exits with 77, which CTest shows as skipped.
 package=$1

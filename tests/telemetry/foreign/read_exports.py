@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # python3 read_exports.py mat|hdf5 FOLDER: SciPy or h5py loads the exports of the sample log in the one line that the
 # documentation shows, and names, units and values are those of ../sample.hpp. Exits with 77 where it is not installed.
 import sys

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // node read_log.mjs LOG: the reader of the MCAP project and the decoder of Foxglove, neither of them ours, read every
 // message of the sample log through its index and compare all with the formulas of ../sample.hpp.
 import assert from "node:assert/strict";

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # read_log.sh LOG: read_log.mjs, or 77 where its packages are not there.
 here=$(dirname "$0")
 if ! command -v node >/dev/null; then

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sample_log FOLDER: writes a log of known content and all its exports, for programs of others to read.
 #include <tactus/data/telemetry/export.hpp>
 

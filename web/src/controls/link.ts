@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { ParameterValue } from '../protocol/foxglove';
 import { linkOf, valuesOf } from '../state/link';
 import type { Session } from '../state/session';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { ParameterValue } from '../protocol/foxglove';
 import type { Session } from '../state/session';
 import { makeControl, type Control } from './control';

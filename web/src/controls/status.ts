@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Sound } from '../sound/sound';
 import { sides, type Session } from '../state/session';
 

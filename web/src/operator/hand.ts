@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Where the visitor may put the hand of one axis; the server has the last word. */
 export const lowest_m = -0.005;
 export const highest_m = 0.015;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Hand, HandPoint } from './hand';
 
 /** Mouse, touch and pen on a scene; keys on a handle; a gamepad. All move the one hand. */

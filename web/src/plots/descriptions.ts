@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { PlotDescription } from './plot';
 import type { SignalName } from '../protocol/messages';
 import { after_s, before_s } from '../state/contact';

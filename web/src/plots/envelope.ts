@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** What a line covers in each column of pixels: nothing is lost between two columns, and nothing is drawn twice. */
 export interface Envelope {
   /** Least and greatest value of the line in each column; a column that it does not cross has low above high. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import uPlot from 'uplot';
 import { palette, type ColourName } from '../scene/palette';
 import { findEnvelope, makeEnvelope, type Envelope } from './envelope';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /**
  * The range of an axis: it contains a base range and the data, goes beyond the base to round values, grows at once and shrinks only after
  * the data have been smaller for a while, so that the axis does not twitch.

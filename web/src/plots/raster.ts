@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Envelope } from './envelope';
 
 /** A colour as the bytes of a pixel. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Definition, Field, Primitive } from './ros2msg';
 
 /**

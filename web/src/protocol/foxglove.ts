@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { cdrDecoder, type Message } from './cdr';
 import { parseRos2msg } from './ros2msg';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Message, NumberArray, Value } from './cdr';
 
 /** What the page reads from the messages of a loop, checked once here. Names as in the schema, in lower case. */

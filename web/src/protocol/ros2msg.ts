@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /**
  * Message definitions as ROS 2 writes them in `.msg` files (schema encoding `ros2msg`): one field a line, comments after
  * `#`, further definitions after a line of `=` and `MSG: package/Name`.

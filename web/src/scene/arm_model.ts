@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { Group, Matrix4, Vector3 } from 'three';
 import type { Arm, Vector } from '../state/arms';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { PerspectiveCamera, Vector3 } from 'three';
 import type { HandPoint } from '../operator/hand';
 import type { ArmsState } from '../protocol/messages';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Colours of the page, read from the style sheet so that scene and plots follow light and dark. */
 
 export const colourNames = [

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** The stretch of the axis that the scene shows, in mm: the reach of the visitor's hand, and that of the scripted tap. */
 export const first_mm = -6;
 export const last_mm = 19;

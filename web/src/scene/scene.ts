@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { palette } from './palette';
 import { first_mm, last_mm, scaleFor, type Scale } from './scale';
 import { arrow, font, label, line, type Context } from './strokes';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { palette } from './palette';
 
 /** What both scenes write and draw with. */

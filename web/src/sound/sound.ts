@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Session, Side } from '../state/session';
 import { sides } from '../state/session';
 import workletUrl from './worklet.ts?worker&url';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /**
  * Turns the force at the hand, one value a servo tick, into sound. The ticks wait in a buffer that evens out how they
  * arrive; they are interpolated (Catmull-Rom) to the rate of the sound card, freed of what is slower than hearing by two

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { ForceVoice } from './voice';
 
 /** The side of the sound that runs on the thread of the sound card. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { ServerInfo } from '../protocol/foxglove';
 
 /** What the server tells of a pair of arms (`tactus.arms` in its metadata): enough to draw them from their joints. */

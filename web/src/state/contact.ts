@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { SlidingSeries } from './series';
 
 /** A contact shown close up: this long before its first touch, and this long after, on a grid of equal steps. */

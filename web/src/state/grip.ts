@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** What the controller believes of the hand, in a sentence; empty where it estimates nothing. */
 export function gripSentence(grip: number, deviation: number): string {
   if (!(deviation > 0) || !(grip > 0)) return '';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { signalNames, type ArmsState, type Block, type HandForce, type LoopState, type SignalName } from '../protocol/messages';
 import { ContactCapture } from './contact';
 import { SlidingSeries } from './series';

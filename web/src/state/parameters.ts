@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { ParameterValue, ServerInfo } from '../protocol/foxglove';
 
 /** What the server tells of one parameter (`tactus.parameters` in its metadata). */

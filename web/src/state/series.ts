@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /**
  * The last `capacity` rows of a few signals over time, in memory that is allocated once. Rows are appended at the end of
  * arrays twice that size and moved to the front when the end is reached, so that every view is one contiguous piece.

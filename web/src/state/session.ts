@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Message } from '../protocol/cdr';
 import type { Connection, Handlers, ParameterValue, ServerInfo, StatusLevel } from '../protocol/foxglove';
 import { toArms, toBlock, toHandForce, toLoopState } from '../protocol/messages';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { LoopState, Verdict } from '../protocol/messages';
 
 /** What the page says about a loop: a word, a sentence, and the shape of an icon, so that colour is not needed. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
 
 /** A real Chromium, and a page that keeps what went wrong in it. */

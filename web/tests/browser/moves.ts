@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Page } from 'playwright-core';
 
 /** What a visitor does with the handle, as the browser sees it: drags of different length and speed, and every key. */

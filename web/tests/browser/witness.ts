@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Page } from 'playwright-core';
 
 /** What was seen of the left loop, from one rest to the next. */

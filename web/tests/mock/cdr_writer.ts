@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Writes CDR, little-endian: the counterpart of `src/protocol/cdr.ts`, written apart from it. */
 export class CdrWriter {
   private bytes = new Uint8Array(4096);

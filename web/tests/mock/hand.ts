@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { tick_s, wall_m } from './loop';
 
 /** The hand of the mock: follows what the visitor asks as an arm would, or plays a scripted tap. */

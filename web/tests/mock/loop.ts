@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /**
  * What a loop of the mock does: a script, no mechanics. Pressed against the wall it rings at 70 Hz where a plain loop would
  * at this gain, and dies out within 50 ms elsewhere, so that the page has something plausible to show.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { CdrWriter } from './cdr_writer';
 import { forceLimit_N, tick_s, wall_m, type MockLoop, type Tick } from './loop';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 import { armReach, Hand } from '../../src/operator/hand';
 import { toArms } from '../../src/protocol/messages';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 import { cdrDecoder, CdrError } from '../../src/protocol/cdr';
 import { parseRos2msg } from '../../src/protocol/ros2msg';

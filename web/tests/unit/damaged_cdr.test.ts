@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 import { cdrDecoder, CdrError, type Message } from '../../src/protocol/cdr';
 import { toBlock, toHandForce, toLoopState } from '../../src/protocol/messages';

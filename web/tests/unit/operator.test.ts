@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 import { Hand, highest_m, lowest_m } from '../../src/operator/hand';
 import { GamepadInput } from '../../src/operator/inputs';

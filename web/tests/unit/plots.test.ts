@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 import { findEnvelope, makeEnvelope, type Envelope } from '../../src/plots/envelope';
 import { Raster, rgb } from '../../src/plots/raster';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 import { signalNames, type Block } from '../../src/protocol/messages';
 import { before_s, closeUpTime_ms, ContactCapture } from '../../src/state/contact';

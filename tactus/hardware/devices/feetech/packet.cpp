@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/feetech/packet.hpp>
 
 namespace tactus::devices::feetech {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/rig/examination.hpp>
 #include <tactus/hardware/wire/latency_timer.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/rig/rig_agreement.hpp>
 #include <tactus/kernel/control/agreed_parameters.hpp>
 #include <tactus/kernel/core/binding.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/devices/damiao/framing.hpp>
 #include <tactus/hardware/devices/damiao/models.hpp>
 #include <tactus/hardware/devices/dynamixel/dynamixel_bus.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/emulation/damiao/faults.hpp>
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/hardware/emulation/feetech/feetech_peer.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/control/estimators/disturbance_observer.hpp>
 #include <tactus/kernel/signal/checks.hpp>
 

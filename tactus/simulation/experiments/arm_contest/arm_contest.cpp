@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/simulation/experiments/arm_contest/arm_contest.hpp>
 #include <tactus/simulation/teleoperator/quantile.hpp>

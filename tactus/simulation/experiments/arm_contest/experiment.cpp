@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/arm_contest/arm_contest.hpp>
 #include <tactus/simulation/experiments/arm_contest/presentation.hpp>
 #include <tactus/simulation/experiments/experiment_of.hpp>

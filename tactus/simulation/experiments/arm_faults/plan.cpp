@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/arm_faults/plan.hpp>
 #include <tactus/simulation/experiments/faults/fault_operator.hpp>
 #include <tactus/simulation/experiments/faults/internal/families.hpp>

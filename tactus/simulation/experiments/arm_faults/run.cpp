@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/station/step.hpp>
 #include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/simulation/experiments/arm_faults/arm_operator.hpp>

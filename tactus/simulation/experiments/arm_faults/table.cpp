@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/toml_writer.hpp>
 #include <tactus/kernel/station/watched_arm.hpp>
 #include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>

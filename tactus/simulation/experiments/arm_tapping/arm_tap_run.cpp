@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/arm_tapping/arm_tap_run.hpp>
 #include <tactus/simulation/experiments/contact_metrics.hpp>
 

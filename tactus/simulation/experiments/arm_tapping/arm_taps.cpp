@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/signal/random.hpp>
 #include <tactus/kernel/signal/root_mean_square.hpp>
 #include <tactus/simulation/experiments/arm_tapping/arm_tap_run.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/arm_tapping/contact_figure.hpp>
 #include <tactus/simulation/experiments/arm_tapping/presentation.hpp>
 #include <tactus/simulation/experiments/presentation.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/arm_vibration/coupled_arms.hpp>
 #include <tactus/simulation/experiments/experiment_of.hpp>
 #include <tactus/simulation/teleoperator/parallel.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/faults/duty.hpp>
 #include <tactus/simulation/experiments/faults/internal/families.hpp>
 #include <tactus/simulation/experiments/faults/pairs.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/faults/judge.hpp>
 #include <tactus/simulation/experiments/faults/schedule.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/faults/table.hpp>
 #include <tactus/simulation/teleoperator/parallel.hpp>
 #include <tactus/simulation/teleoperator/quantile.hpp>

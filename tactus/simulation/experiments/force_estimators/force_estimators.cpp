@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/identification/axis/force_comparison.hpp>
 #include <tactus/kernel/mechanics/minimum_jerk.hpp>
 #include <tactus/simulation/experiments/force_estimators/force_estimators.hpp>

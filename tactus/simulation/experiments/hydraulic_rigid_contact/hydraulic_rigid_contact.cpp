@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/mechanics/minimum_jerk.hpp>
 #include <tactus/kernel/signal/delay_line.hpp>
 #include <tactus/kernel/signal/second_order_filter.hpp>

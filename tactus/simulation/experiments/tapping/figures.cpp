@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/presentation.hpp>
 #include <tactus/simulation/experiments/tapping/figures.hpp>
 

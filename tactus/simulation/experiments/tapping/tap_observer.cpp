@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/contact_metrics.hpp>
 #include <tactus/simulation/experiments/tapping/tap_observer.hpp>
 

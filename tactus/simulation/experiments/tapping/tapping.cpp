@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/signal/random.hpp>
 #include <tactus/simulation/experiments/draws.hpp>
 #include <tactus/simulation/experiments/tapping/tapping.hpp>

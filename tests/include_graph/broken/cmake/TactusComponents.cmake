@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Components of the folder `broken`, with the rules of the real ones.
 include(${CMAKE_CURRENT_LIST_DIR}/../../../../cmake/TactusComponents.cmake)
 

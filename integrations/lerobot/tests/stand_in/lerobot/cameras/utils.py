@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulated cameras: a frame is the time at which it was taken."""
 
 import time
