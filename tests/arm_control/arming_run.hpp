@@ -229,8 +229,8 @@ inline std::string words_of(const Arming& arming) {
          std::to_string(arming.lasted_s) + " s";
 }
 
-/// Arms both, as a program does: align, arm, dead-man switch. A hand that holds an arm releases it after `lets_go_s`. It
-/// ends after `longest_s`, or a second after both are active, or after either has released its arm or refused it.
+/// Arms both, as a program does: align, arm, dead-man switch. A hand that holds an arm releases it after `lets_go_s`.
+/// It ends after `longest_s`, or a second after both are active, or after either has released its arm or refused it.
 inline Arming arm_both(station::JointSupervisedPair& sites, ArmingDevice& leader, ArmingDevice& follower, double tick_s,
                        double lets_go_s, double longest_s) {
   constexpr double aligns_s = 0.02, begins_s = 0.04, after_s = 1.0;
