@@ -23,6 +23,9 @@ sample(once "exit 0")
 if(AFTERWARDS)
   sample(afterwards "${AFTERWARDS}")
 endif()
+add_test(NAME cases COMMAND sh -c
+  "test -n \"$TACTUS_CASES\" && test \"$TACTUS_CASES\" = A.b:C.d && exit 0; echo 'cases: A.b:C.d'; echo 'inconclusive: late by up to 99 ms'; exit 77")
+set_tests_properties(cases PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME lacks COMMAND sh -c "echo 'SKIPPED: nothing there'; exit 77")
 set_tests_properties(lacks PROPERTIES SKIP_RETURN_CODE 77)
 END
@@ -38,8 +41,9 @@ rerun() {
 
 rerun ''
 test "$status" = 0 || fail "one that passes alone: status $status"
-grep -q '^1 real-time tests were inconclusive' "$folder/said" || fail 'it does not say how many'
-grep -q 'alone, run 1: passed' "$folder/said" || fail 'it was not run again'
+grep -q '^2 real-time tests were inconclusive' "$folder/said" || fail 'it does not say how many'
+test "$(grep -c 'alone, run 1: passed' "$folder/said")" = 2 || fail 'each was not run again'
+grep -q 'cases: A.b, C.d' "$folder/said" || fail 'the cases are not named'
 rerun 'exit 3'
 test "$status" = 1 || fail "one that fails alone: status $status"
 grep -q 'sample: afterwards (a+b) failed' "$folder/said" || fail 'the failure is not named'
