@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,13 @@ class RigRun : public Command {
     return side("leader", "@1", bus, model, joints, of_leader + of_both) +
            side("follower", "@2", bus, model, joints, of_both);
   }
-  /// How far a joint is from its leader's at most at this second, in rad.
+  /// How far a joint is from its leader's at most at this second, in rad; infinity where the run has no such line.
   static double apart(const std::string& said, const std::string& second) {
-    const auto at = said.find("farthest apart ", said.find("\n" + second + " s: "));
-    return std::atof(said.c_str() + at + std::string("farthest apart ").size());
+    const std::string words = "farthest apart ";
+    const auto line = said.find("\n" + second + " s: ");
+    const auto at = line == std::string::npos ? line : said.find(words, line);
+    if (at == std::string::npos) return std::numeric_limits<double>::infinity();
+    return std::atof(said.c_str() + at + words.size());
   }
   /// The peers at `@1` and `@2`, then the rest of the script, in which `$RUN` drives the rig.
   std::string shell(const std::string& leader, const std::string& follower, const std::string& rig,
