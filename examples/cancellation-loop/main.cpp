@@ -9,7 +9,7 @@
 
 /// A servo loop of one's own around `Cancellation` alone. A hand moves a simulated master at 50 mm/s while impacts of
 /// 1 N and 10 ms are displayed to it, ten in a second. The same hand moves the same master without them: what the
-/// person intended.
+/// operator intended.
 int main() {
   constexpr double tick_s = 200e-6;
   constexpr int substeps = 20;
@@ -24,7 +24,7 @@ int main() {
     const double displayed_N = phase < 1.0 ? std::sin(3.14159 * phase) : 0.0;
 
     const double measured_m = master->measure().motor_position_m;
-    const double intended_m = cancellation->intended(measured_m);  // what a slave would be told
+    const double intended_m = cancellation->intended(measured_m);  // the position to send to the slave
     cancellation->advance(-displayed_N);                           // a force that pushes the hand back is negative
 
     const double meant_m = undisturbed.measure().motor_position_m;

@@ -57,7 +57,8 @@ std::string wrong_models(const ArmPoint& point) {
 std::string verdict_of(const ArmAnalysis& a) {
   std::string text = std::string(a.is_stable() ? "Stable" : "Unstable") + " at a force gain of " +
                      report::number(a.point.force_gain, 3) + "; the limit is " + text_of(a.limit.exact);
-  if (a.point.loops.size() > 1) text += ", with " + wrong_models(a.point) + " " + text_of(a.limit.drawn);
+  if (a.point.loops.size() > 1)
+    text += " with the exact model, " + text_of(a.limit.drawn) + " with " + wrong_models(a.point);
   return text + ".";
 }
 

@@ -163,9 +163,10 @@ void add_device_zero(CLI::App& device, const CLI::App& app, int& status) {
       "zero", "Set the present position of joints to zero, and write the offsets into the rig file");
   verb->add_option("RIG", options->rig, "Rig file")->required();
   verb->add_option("JOINT", options->joints,
-                   "Joints, or a side for all of its joints, such as arm.leader.elbow or arm.leader")
+                   "Joints to set, such as arm.leader.elbow; a side, such as arm.leader, sets all of its joints")
       ->required();
-  verb->add_option("--motor", options->motor, "Only this motor: its identifier, or the name of its joint")
+  verb->add_option("--motor", options->motor,
+                   "Set only this motor, given by its identifier or by the name of its joint")
       ->type_name("ID|JOINT");
   verb->callback([options, &app, &status] { end_command(app, zero(*options), status); });
 }

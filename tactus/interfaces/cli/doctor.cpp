@@ -112,7 +112,7 @@ void add_doctor(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* verb =
       app.add_subcommand("doctor", "Check whether this machine can run a control loop in real time, and suggest a fix");
-  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Control cycles per second to measure at")->type_name("HZ");
+  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Rate of the control cycle to test")->type_name("HZ");
   verb->add_option("--duration-s", options->duration_s, "Time to measure")->type_name("S");
   add_servo_options(*verb, options->servo);
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json and the figure");

@@ -46,7 +46,7 @@ struct Recipe {
 };
 
 constexpr Recipe by_isolation{
-    "isolate", "Identify a leader from the motor outward, by successive isolation", "Successive isolation",
+    "isolate", "Identify a leader on the bench part by part (successive isolation)", "Successive isolation",
     "Found from the motor outward, each stage with what the earlier ones found. The intervals hold what the residuals "
     "of a stage leave open and what the earlier stages did not know.",
     [](identification::Rig& rig, const identification::IsolationProgress& progress) {

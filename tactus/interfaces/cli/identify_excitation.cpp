@@ -237,8 +237,8 @@ Check identify_excitation(ExcitationOptions options, const std::string& name, co
 
 void add_identify_excitation(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<ExcitationOptions>();
-  CLI::App* verb = identify.add_subcommand("excitation",
-                                           "Design a motion of an arm within its limits, to record for `identify arm`");
+  CLI::App* verb = identify.add_subcommand(
+      "excitation", "Design the motion to record for `identify arm`, within the limits of the arm");
   options->output.own_files = {"trajectory.csv"};
   add_arm_urdf_options(*verb, options->urdf, false);
   verb->add_option("--duration-s", options->request.duration_s, "Duration of the motion, from rest to rest")

@@ -153,7 +153,7 @@ void add_identify_prediction(CLI::App& identify_command, const std::string& name
                              int& status) {
   auto options = std::make_shared<PredictionOptions>();
   CLI::App* verb = identify_command.add_subcommand(
-      "prediction", "Find the time constant of prediction blocks in closed form, and from data");
+      "prediction", "Compute the time constant of prediction blocks from the model, and fit it to a motion");
   verb->add_option("EXPERIMENT", options->experiment, "Experiment file (TOML) of the kind inverse-model-chirp")
       ->required();
   add_set_option(*verb, options->set);

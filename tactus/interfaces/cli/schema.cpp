@@ -56,7 +56,8 @@ void add_schema(CLI::App& app, int& status) {
   }
   verb->add_option("KIND", options->kind, "Kind of experiment: " + kinds);
   verb->add_flag("--reference", options->reference, "Print the reference page in Markdown instead");
-  verb->add_option("--results", options->verb, "Print the schema of the results that this command prints with --json")
+  verb->add_option("--results", options->verb,
+                   "Print the schema of the JSON results of COMMAND, such as run or identify frf")
       ->type_name("COMMAND")
       ->expected(1, 2);
   verb->callback([options, kinds, &app, &status] {

@@ -7,7 +7,7 @@ namespace tactus::cli {
 
 void add_stability_limit(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
   add_stability_command(stability, "limit",
-                        "Find the gain limit of the linear model, of the linear rig in time, and of taps",
+                        "Find the gain limit of the linear loop, of its simulation, and of simulated taps",
                         stability::report_limit, name, command, status);
 }
 

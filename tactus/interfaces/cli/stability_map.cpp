@@ -174,7 +174,7 @@ Check run(const MapOptions& options, const std::string& command) {
 void add_stability_map(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<MapOptions>();
   CLI::App* verb = stability.add_subcommand(
-      "map", "Draw a map of the parameters for which taps are stable, or of the gain limit of two arms");
+      "map", "Map where taps settle, or the gain limit of two arms, over a grid of parameters");
   add_experiment_options(*verb, options->experiment);
   verb->add_option("--vary", options->vary,
                    "Axis of the map: key=from:to:count, key=from:to:count[log] or key=a,b,c; for two arms key=a,b,c, "
