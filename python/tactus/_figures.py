@@ -78,6 +78,16 @@ def settings_of(settings: Mapping[str, Any], without: Sequence[str] = ()) -> str
     return ", ".join(setting_of(key, value) for key, value in settings.items() if key not in without)
 
 
+def is_even_in_logarithm(values: Array) -> bool:
+    """Whether an axis looks better in decades: the steps of its logarithms are more equal than its own."""
+    import numpy
+
+    if values.size < 3 or (values <= 0).any():
+        return False
+    steps, ratios = numpy.diff(values), numpy.diff(numpy.log(values))
+    return bool(numpy.ptp(ratios) / abs(ratios).mean() < numpy.ptp(steps) / abs(steps).mean())
+
+
 class Grid:
     """Axes row by row: those of the caller, or new ones in a figure of their own.
 

@@ -7,7 +7,7 @@ import csv
 import pathlib
 from typing import TYPE_CHECKING, Any, Dict, List, Tuple
 
-from ._figures import BLACK, BLUE, COLOURS, Grid, in_words, label_of, pyplot, setting_of, settings_of, with_unit
+from ._figures import BLACK, BLUE, COLOURS, Grid, in_words, is_even_in_logarithm, label_of, pyplot, setting_of, settings_of, with_unit
 from ._words import Path
 
 if TYPE_CHECKING:
@@ -23,16 +23,6 @@ if TYPE_CHECKING:
 # What a run does, and the colour of its cell, as in the report of `tactus stability map`.
 _VERDICTS = {"settled": "#cfe8d5", "ringing": "#ffe08a", "limit-cycle": "#f2a07b", "diverged": "#8a4b7d"}
 _MOST_PANELS = 4
-
-
-def _is_even_in_logarithm(values: Array) -> bool:
-    """Whether an axis looks better in decades: the steps of its logarithms are more equal than its own."""
-    import numpy
-
-    if values.size < 3 or (values <= 0).any():
-        return False
-    steps, ratios = numpy.diff(values), numpy.diff(numpy.log(values))
-    return bool(numpy.ptp(ratios) / abs(ratios).mean() < numpy.ptp(steps) / abs(steps).mean())
 
 
 def _edges(values: Array, logarithmic: bool) -> Array:
@@ -111,7 +101,7 @@ def _verdicts(result: Result, folder: Path | None, axes: Any) -> Figure:
     cells = None if folder is None else _cells_of(folder, (len(titles), y.size, x.size))
     columns = len(titles)
     grid = Grid(axes, 1, columns, (4.6 if columns == 1 else 3.4, 3.2))
-    log_x, log_y = _is_even_in_logarithm(x), _is_even_in_logarithm(y)
+    log_x, log_y = is_even_in_logarithm(x), is_even_in_logarithm(y)
     edges_x, edges_y = _edges(x, log_x), _edges(y, log_y)
     name = in_words(keys[-2].key)[0]
     for place, (ax, title) in enumerate(zip(grid, titles)):

@@ -15,7 +15,7 @@ import re
 from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
 
 from ._figures import (
-    BLACK, BLUE, BROWN, COLOURS, GREEN, GREY, MAGENTA, ORANGE, Grid, in_words, label_of, setting_of, settings_of,
+    BLACK, BLUE, BROWN, COLOURS, GREEN, GREY, MAGENTA, ORANGE, Grid, in_words, is_even_in_logarithm, label_of, setting_of, settings_of,
     with_unit,
 )
 from ._episodes import episode
@@ -180,6 +180,8 @@ def settling(result: Result, *, over: str | None = None, axes: Any = None) -> Fi
     Raises:
         ValueError: no key has two numbers.
     """
+    import numpy
+
     key = over if over is not None else _number_key(result.runs)
     groups: Dict[str, List[Record]] = {}
     for run in result.runs:
@@ -212,8 +214,13 @@ def settling(result: Result, *, over: str | None = None, axes: Any = None) -> Fi
         time.set_ylim(bottom=0.0)
     share.set_ylabel(with_unit("taps that settle", "%"), fontsize=9)
     share.set_ylim(0.0, 105.0)
+    values = numpy.unique([float(run.set[key]) for run in result.runs])
     for ax in grid:
         ax.set_xlabel(label_of(key), fontsize=9)
+        if is_even_in_logarithm(values):
+            ax.set_xscale("log")
+            ax.set_xticks(values, [f"{value:g}" for value in values])
+            ax.set_xticks([], minor=True)
     grid.legend()
     return grid.figure
 
@@ -231,7 +238,8 @@ def _time_s(table: Table) -> Array:
 
 
 def recording(
-    table: Log | Table, found: Result | None = None, *, columns: Sequence[str] | None = None, axes: Any = None
+    table: Log | Table, found: Result | None = None, *, columns: Sequence[str] | None = None, from_s: float | None = None,
+    to_s: float | None = None, axes: Any = None,
 ) -> Figure:
     """Signals of a recording over time: one panel for each unit, and a band where `diagnose` found an oscillation.
 
@@ -239,13 +247,18 @@ def recording(
         table: of `read_log`: columns of shape (rows,) in the units that the file states. Time in s.
         found: result of `diagnose` of the same recording; a band is labelled with frequency and mechanism.
         columns: names of those to draw, by default all but the times.
+        from_s, to_s: the times between which it is drawn, in s; by default all.
         axes: to draw into, one for each unit.
 
     Raises:
-        ValueError: there is no column of times, or no such column.
+        ValueError: there is no column of times, no such column, or no row between these times.
     """
     one = _only_table(table)
     time_s = _time_s(one)
+    first_s, last_s = (time_s[0] if from_s is None else from_s), (time_s[-1] if to_s is None else to_s)
+    shown = (time_s >= first_s) & (time_s <= last_s)
+    if not shown.any():
+        raise ValueError(f"{one.name} has no row from {first_s:g} s to {last_s:g} s; it ends at {time_s[-1]:g} s")
     names = list(columns) if columns is not None else [name for name in one if name not in ("time", "time_s")]
     panels: Dict[str, List[str]] = {}
     for name in names:
@@ -258,13 +271,15 @@ def recording(
     for (unit, group), ax in zip(panels.items(), grid):
         for name in group:
             words = in_words(name)[0].replace("master", "leader").replace("slave", "follower")
-            ax.plot(time_s, one[name], color=COLOURS[place % len(COLOURS)], linewidth=1.0, label=words)
+            ax.plot(time_s[shown], one[name][shown], color=COLOURS[place % len(COLOURS)], linewidth=1.0, label=words)
             place += 1
         quantity = {"m": "position", "rad": "position", "N": "force", "N m": "torque"}.get(unit)
         ax.set_ylabel(with_unit(quantity or "value", unit or "no unit"), fontsize=9)
         for oscillation in found.oscillations if found is not None else ():
             label = f"{oscillation.frequency_Hz:.3g} Hz, {oscillation.mechanism}" if ax is grid.axes[-1][0] else None
-            ax.axvspan(oscillation.from_s, oscillation.to_s, color=GREY, alpha=0.2, linewidth=0, label=label)
+            band = (max(oscillation.from_s, first_s), min(oscillation.to_s, last_s))
+            if band[0] < band[1]:
+                ax.axvspan(*band, color=GREY, alpha=0.2, linewidth=0, label=label)
     grid.axes[-1][0].set_xlabel(with_unit("time", "s"), fontsize=9)
     grid.legend()
     return grid.figure

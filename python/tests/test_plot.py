@@ -233,6 +233,12 @@ class Figures(InAFolder):
         self.assertEqual(band.get_label(), f"{oscillation.frequency_Hz:.3g} Hz, induced-motion")
         self.assertEqual((min(band.get_xy()[:, 0]), max(band.get_xy()[:, 0])), (oscillation.from_s, oscillation.to_s))
         self.assertEqual(len(tactus.plot.recording(table, columns=["tip_force"]).axes), 1)
+        (ax,) = tactus.plot.recording(table, found, columns=["tip_force"], from_s=1.0, to_s=1.2).axes
+        time_s, values = line(ax, "tip force")
+        self.assertEqual((time_s[0], time_s[-1]), (1.0, 1.2))
+        numpy.testing.assert_array_equal(values, table["tip_force"][1000:1201])
+        with self.assertRaisesRegex(ValueError, "has no row from 9 s to 3.499 s; it ends at 3.499 s"):
+            tactus.plot.recording(table, from_s=9.0)
         with self.assertRaisesRegex(ValueError, "has no column 'farce'; it has time, "):
             tactus.plot.recording(table, columns=["farce"])
 
