@@ -111,7 +111,7 @@ class Package(InAFolder):
     def test_pip_installs_it_and_the_wheel_fits_every_python_3(self):
         source = self.folder / "source"
         source.mkdir()
-        for name in ("pyproject.toml", "setup.py"):
+        for name in ("pyproject.toml", "setup.py", "README.md"):
             (source / name).write_text((ROOT / "python" / name).read_text())
         (source / "tactus").mkdir()
         for file in (ROOT / "python" / "tactus").iterdir():
