@@ -108,6 +108,8 @@ class Grid:
             self.axes: List[List[Axes]] = [
                 list(row) for row in self.figure.subplots(rows, columns, squeeze=False)
             ]
+            for ax in self:
+                self._dress(ax)
         else:
             import numpy
 
@@ -119,14 +121,17 @@ class Grid:
                 )
             self.axes = [given[row * columns:(row + 1) * columns] for row in range(rows)]
             self.figure = given[0].figure
-        for ax in self:
-            ax.grid(True, color=GRID, linewidth=0.8)
-            ax.set_axisbelow(True)
-            ax.ticklabel_format(useOffset=False)
-            ax.tick_params(colors=MUTED, labelsize=8)
-            for side, spine in ax.spines.items():
-                spine.set_visible(side in ("left", "bottom"))
-                spine.set_color(FRAME)
+
+    @staticmethod
+    def _dress(ax: Axes) -> None:
+        """The look of new axes; the caller's own keep theirs."""
+        ax.grid(True, color=GRID, linewidth=0.8)
+        ax.set_axisbelow(True)
+        ax.ticklabel_format(useOffset=False)
+        ax.tick_params(colors=MUTED, labelsize=8)
+        for side, spine in ax.spines.items():
+            spine.set_visible(side in ("left", "bottom"))
+            spine.set_color(FRAME)
 
     def __iter__(self) -> Any:
         return (ax for row in self.axes for ax in row)

@@ -7,7 +7,9 @@ import csv
 import pathlib
 from typing import TYPE_CHECKING, Any, Dict, List, Tuple
 
-from ._figures import BLACK, BLUE, COLOURS, Grid, in_words, is_even_in_logarithm, label_of, pyplot, setting_of, settings_of, with_unit
+from ._figures import (
+    BLACK, BLUE, COLOURS, Grid, in_words, is_even_in_logarithm, label_of, pyplot, setting_of, settings_of, with_unit,
+)
 from ._words import Path
 
 if TYPE_CHECKING:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of results and logs, with Matplotlib (Debian: `python3-matplotlib`), which is imported when a figure is drawn.
+"""Figures of results and logs, with Matplotlib 3.6 or newer (Debian: `python3-matplotlib`).
 
-Every function returns the Matplotlib `Figure`. It makes the figure with `matplotlib.pyplot`, so that a notebook or
+Matplotlib is imported when a figure is drawn. Every function returns the Matplotlib `Figure`. It makes the figure with `matplotlib.pyplot`, so that a notebook or
 `matplotlib.pyplot.show()` shows it; or it draws into the `axes` that you pass, one or several, row by row.
 
     result = tactus.run("experiments/tapping.toml", vary={"control.cancellation": ["off", "on"]}, out="out/taps")
@@ -14,11 +14,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
 
-from ._figures import (
-    BLACK, BLUE, BROWN, COLOURS, GREEN, GREY, MAGENTA, ORANGE, Grid, in_words, is_even_in_logarithm, label_of, setting_of, settings_of,
-    with_unit,
-)
 from ._episodes import episode
+from ._figures import (
+    BLACK, BLUE, BROWN, COLOURS, GREEN, GREY, MAGENTA, ORANGE, Grid, in_words, is_even_in_logarithm, label_of, setting_of,
+    settings_of, with_unit,
+)
 from ._maps import stability_map
 from .logs import Log, Table
 
@@ -67,6 +67,8 @@ def _runs_of(log: Log | Table, result: Result | None) -> List[Tuple[Table, Dict[
         if run is None:
             continue
         row = int(run[1]) - 1 if run[1] else 0
+        if result is not None and row >= len(result.runs):
+            raise ValueError(f"{topic} has no run in this result, which has {len(result.runs)}: pass the result of the same call")
         settings = {} if result is None else dict(result.runs[row].set.to_dict())
         if result is None and run[1]:
             settings = {"run": int(run[1])}

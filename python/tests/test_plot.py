@@ -127,6 +127,14 @@ class Figures(InAFolder):
         with self.assertRaisesRegex(ValueError, "1 axes were given, and the figure has 2 x 1: pass 2, row by row, or none"):
             tactus.plot.taps(table, axes=axes[0])
         self.assertEqual(len(self.pyplot.get_fignums()), 1, "no figure was made that nobody sees")
+        logarithmic = self.pyplot.subplots(2)[1]
+        logarithmic[1].set_yscale("log")
+        tactus.plot.taps(table, axes=logarithmic)
+        self.assertEqual(logarithmic[1].get_yscale(), "log", "axes of the caller keep their look")
+        result = self.sweep()
+        del result.values.to_dict()["runs"][4:]
+        with self.assertRaisesRegex(ValueError, "/run_5/teleoperator has no run in this result, which has 4"):
+            tactus.plot.taps(tactus.read_log("run/log"), result)
         with self.assertRaisesRegex(ValueError, "this log has no taps of one axis"):
             tactus.plot.taps(tactus.read_log(RECORDINGS / "shaking-contact.csv"))
 
