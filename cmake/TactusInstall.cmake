@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` leaves behind: a package that find_package(tactus) finds, the `tactus` command and the
-# experiments.
+# experiments. Install components: `library`, `command` and, where none is named, `development`.
 
 include(CMakePackageConfigHelpers)
 set(TACTUS_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/tactus)
@@ -21,7 +21,8 @@ foreach(component IN LISTS TACTUS_COMPONENTS_BUILT)
         list(APPEND dependencies ${CMAKE_MATCH_2})
       endif()
     endforeach()
-    install(TARGETS tactus_${module} EXPORT tactus_${component})
+    install(TARGETS tactus_${module} EXPORT tactus_${component}
+            LIBRARY COMPONENT library NAMELINK_COMPONENT development)
     tactus_folder(folder ${module})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/tactus/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/${component}
             FILES_MATCHING PATTERN *.hpp PATTERN internal EXCLUDE)
@@ -45,7 +46,7 @@ install(FILES ${PROJECT_BINARY_DIR}/tactusConfig.cmake ${PROJECT_BINARY_DIR}/tac
         DESTINATION ${TACTUS_PACKAGE_DIR})
 
 if(TARGET tactus)
-  install(TARGETS tactus)
+  install(TARGETS tactus COMPONENT command)
   include(${CMAKE_CURRENT_LIST_DIR}/TactusInstallCommand.cmake)
 endif()
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)

@@ -12,7 +12,8 @@ install(CODE "
   if(NOT made EQUAL 0 AND NOT made EQUAL 77)
     message(FATAL_ERROR \"scripts/man-pages failed: \${made}\")
   endif()
-")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/tactus OPTIONAL)
+" COMPONENT command)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/experiments DESTINATION ${CMAKE_INSTALL_DATADIR}/tactus COMPONENT command OPTIONAL)
 # The live page, where it was built (web/).
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/web/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tactus/page OPTIONAL)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/web/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tactus/page
+        COMPONENT command OPTIONAL)

@@ -2,13 +2,14 @@
 """tactus: crisp and stable force-reflecting teleoperation, from Python.
 
 Numbers have their unit in their name, keyword arguments are the keys of the files, and exceptions have the messages of the
-`tactus` command. NumPy is needed for arrays, pandas for data frames.
+`tactus` command. NumPy is needed for arrays, pandas for data frames, Matplotlib for figures (`tactus.plot`).
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from . import plot
 from .cancellation import Cancellation
 from .commands import (
     Output,
@@ -59,6 +60,7 @@ __all__ = [
     "estimate",
     "faults",
     "identify",
+    "plot",
     "read_log",
     "reference",
     "register_device",

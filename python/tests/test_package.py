@@ -98,9 +98,11 @@ class Package(InAFolder):
         text = (ROOT / "docs" / "how-to" / "python.md").read_text()
         blocks = re.findall(r"^(<!-- block is not run: [^\n]+ -->\n)?```python\n(.*?)^```", text, flags=re.S | re.M)
         blocks = [block for not_run, block in blocks if not not_run]
-        self.assertEqual(len(blocks), 5)
+        self.assertEqual(len(blocks), 6)
         os.chdir(ROOT)
         for block in blocks:
+            if "tactus.plot" in block and importlib.util.find_spec("matplotlib") is None:
+                continue  # test_plot is skipped then, and names the package
             done = subprocess.run([sys.executable, "-c", block], capture_output=True, text=True, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""), block)
             self.assertTrue(done.stdout or "cancellation" in block, block)
@@ -109,7 +111,7 @@ class Package(InAFolder):
     def test_pip_installs_it_and_the_wheel_fits_every_python_3(self):
         source = self.folder / "source"
         source.mkdir()
-        for name in ("pyproject.toml", "setup.py"):
+        for name in ("pyproject.toml", "setup.py", "README.md"):
             (source / name).write_text((ROOT / "python" / name).read_text())
         (source / "tactus").mkdir()
         for file in (ROOT / "python" / "tactus").iterdir():

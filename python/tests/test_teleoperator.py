@@ -2,6 +2,8 @@
 """A running pair, with arms whose driver is written in Python."""
 
 import ctypes
+import importlib.util
+import json
 import time
 import unittest
 
@@ -71,6 +73,30 @@ class Running(InAFolder):
         self.assertEqual(len(log["/slave/joint_2"].times_ns), report.cycles)
         self.assertEqual(len(log["/episodes"].times_ns), 2)
         self.assertEqual(int(log["/episodes"].times_ns[0]) < int(log["/episodes"].times_ns[1]), True)
+        with self.subTest("the figure of an episode"):
+            self.expect_figure("log", log)
+
+    def expect_figure(self, folder, log):
+        """The figure of the longest episode shows what the log has."""
+        if importlib.util.find_spec("matplotlib") is None:
+            self.skipTest("install python3-matplotlib to run this")
+        import matplotlib
+
+        matplotlib.use("Agg")
+        tables = [one for one in json.loads(tactus.command("export", folder, "--wide", "--out", "episodes",
+                                                           "--json").results)["episodes"] if one["file"]]
+        longest = max(tables, key=lambda one: one["to_s"] - one["from_s"])
+        axes = tactus.plot.episode(folder, number=longest["number"]).axes
+        self.assertEqual([ax.get_ylabel().split("\n")[0] for ax in axes if "position" in ax.get_ylabel()],
+                         ["shoulder", "elbow"])
+        leader, follower = axes[0].get_lines()
+        self.assertEqual((leader.get_label(), follower.get_label()), ("leader", "follower"))
+        self.assertAlmostEqual(leader.get_xdata()[-1], longest["to_s"] - longest["from_s"], delta=0.021)
+        for line, topic in ((leader, "/master/joint_1"), (follower, "/slave/joint_1")):
+            there = log[topic]["position_rad"]
+            self.assertTrue((line.get_ydata() >= there.min()).all() and (line.get_ydata() <= there.max()).all())
+        with self.assertRaisesRegex(ValueError, "has no table of episode 99; episodes with a table: "):
+            tactus.plot.episode(folder, number=99)
 
     def held_by(self, kind, own_process=False, watchdog_s=0.2):
         """A follower that fails once it follows: both hold."""
