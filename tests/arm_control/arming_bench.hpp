@@ -84,10 +84,11 @@ inline Joints<control::SupervisionParams> supervision(bool leads, double raise_s
   each.silence.catch_up_m_per_s = 0.3;
   each.watchdog.timeout_s = 0.1;
   each.packets.position_limit_m = 10.0;
-  each.probe = {.duration_s = 0.5, .least_m = 0.0015, .most_m = 0.3};
+  each.probe = {.duration_s = 0.4, .least_m = 0.0015, .most_m = 0.3};
   each.overload.missed_share = 0.5;
   each.force_sensor.residual_limit_N = each.hand_sensor.residual_limit_N = 200.0;
   Joints<control::SupervisionParams> all(joints, each);
+  const arm::JointVector inertia = arm::Chain::make(true_arm().chain)->mass_matrix(start()).diagonal();
   for (std::size_t i = 0; i < joints; ++i) {
     all[i].probe.force_N = rig[i].probe_N_m;
     if (raise_s == 0.0) continue;
@@ -98,6 +99,7 @@ inline Joints<control::SupervisionParams> supervision(bool leads, double raise_s
                                    .force_limit_N = rig[i].torque_N_m,
                                    .trial_force_N = rig[i].probe_N_m},
                                   Seconds{tick_s});
+    all[i].probe = control::with_gentle_trial(all[i].probe, all[i].support, inertia[static_cast<Eigen::Index>(i)]);
   }
   return all;
 }

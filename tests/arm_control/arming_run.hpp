@@ -157,7 +157,7 @@ class ArmingDevice final : public station::JointDevice {
 
 /// What became of an arm while it was armed.
 struct Fate {
-  double fastest_rad_per_s = 0.0;  ///< of any joint, until the site released it
+  double fastest_rad_per_s = 0.0;  ///< of any joint, from when the site has power until it released the arm
   double farthest_rad = 0.0;       ///< of any joint from where it began, the same
   double active_rad_per_s = 0.0;   ///< while the site was active
   bool powered = false;
@@ -199,7 +199,8 @@ void look(const Site& site, const ArmingDevice& arm, double now_s, Fate& fate) {
   const double fast = arm.velocity().cwiseAbs().maxCoeff(&fastest);
   if (site.state() == SiteState::active) {
     fate.active_rad_per_s = std::max(fate.active_rad_per_s, fast);
-  } else if (!fate.released) {
+  } else if (!fate.released && site.state() != SiteState::configure) {
+    // Without power the site moves nothing: an arm that falls then is dropped by its hand.
     if (fast > fate.fastest_rad_per_s) {
       fate.fastest_joint = static_cast<std::size_t>(fastest);
       fate.fastest_at_s = now_s;

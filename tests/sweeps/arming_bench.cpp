@@ -15,6 +15,19 @@ Beliefs truth_of(const ShippedPair& pair) {
           .follower_wiring = {}};
 }
 
+bool ShippedPair::hangs_freely() const {
+  const auto is_free = [](const arm::Chain::Params& chain, const arm::JointVector& hangs) {
+    constexpr double clear_rad = 0.1;
+    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+      const double at_rad = hangs[static_cast<Eigen::Index>(i)];
+      const auto& limits = chain.joints[i].limits;
+      if (at_rad < limits.lower_rad + clear_rad || at_rad > limits.upper_rad - clear_rad) return false;
+    }
+    return true;
+  };
+  return is_free(setup.leader.arm.chain, leader_hangs) && is_free(setup.follower.arm.chain, follower_hangs);
+}
+
 ShippedPair unjudged(ShippedPair pair) {
   pair.setup.params.rig.support.raise_s = 0.0;
   return pair;

@@ -25,13 +25,17 @@ struct ShippedPair {
   Joints<station::DeviceLimits> leader_limits, follower_limits;
   arm::JointVector leader_hangs, follower_hangs;  ///< where its arms come to rest without power
 
+  /// Whether no joint leans on an end stop there, or is nearer to one than 0.1 rad: only such an arm hangs freely.
+  [[nodiscard]] bool hangs_freely() const;
   [[nodiscard]] std::size_t joints() const { return leader_limits.size(); }
   /// Ticks at the rate of its sites.
   [[nodiscard]] double tick_s() const { return 1.0 / setup.params.servo.rate_Hz; }
 };
 
 /// Every pair of arms with a URDF that can be supervised, at the pose of its file, or at another one (`task.pose`).
-/// The gripper of the rig file is left out: it has no weight in the model.
+/// The gripper of the rig file is left out: it has no weight in the model. The torques that try the motors are those
+/// of limits.toml, an OpenArm's, but for two: the geared pair's are enough for its larger arm, and joint 5 of the YAM
+/// pair needs more. Its joint 4 keeps 1.5 N m, which is far too much for it.
 std::vector<ShippedPair> shipped_pairs(std::int64_t pose = 0);
 
 /// What the sites take a pair for, and how it is connected.
@@ -57,7 +61,7 @@ struct WrongPair {
 };
 /// Number `index` of a seed. Kinds, pairs and joints are taken in turn; sizes, arms and what keeps them up are drawn:
 /// masses by 0.3 to 10, lengths by 0.5 to 1,000 (with centimetres and millimetres in a third of the cases), a joint
-/// swapped with its neighbour, a joint that counts the other way.
+/// swapped with its neighbour, a joint that counts the other way. A hand holds an arm that cannot hang freely.
 WrongPair wrong_pair(const std::vector<ShippedPair>& pairs, std::int64_t seed, std::size_t index);
 /// The same of a model in which every mass and every number of a centre of mass is wrong by up to `share`.
 WrongPair nearly_right_pair(const std::vector<ShippedPair>& pairs, std::int64_t seed, std::size_t index, double share);

@@ -2,7 +2,8 @@
 // arming_sweep [WRONG [SEED [RIGHT [all]]]]: arms so many wrong and so many nearly right pairs of arms in virtual time,
 // 500 each with seed 2 unless stated otherwise. Prints what became of them, and every one that broke a rule; with `all`
 // every one. As a control, a tenth of the wrong ones are armed without judgement. Status 1 where a joint of a wrong
-// pair exceeded 0.5 rad/s or 30 mrad before it was released, a right pair was refused, or the control shows no leap.
+// pair exceeded 0.5 rad/s or 30 mrad before it was released, a right pair did or was refused, or the control shows no
+// leap.
 #include <tactus/simulation/teleoperator/parallel.hpp>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ std::vector<Run> run_all(const std::vector<ShippedPair>& pairs, std::size_t coun
   return runs;
 }
 
-bool breaks(const Arming& arming) { return arming.fastest() > 0.5 || arming.farthest() > 0.03; }
+bool breaks(const Run& run) { return run.arming.fastest() > 0.5 || run.arming.farthest() > 0.03; }
 
 /// Whether its support was refused or taken back.
 bool is_doubted(const Arming& arming) {
@@ -46,15 +47,21 @@ bool is_doubted(const Arming& arming) {
   return arming.refused() || doubts(arming.leader.cause) || doubts(arming.follower.cause);
 }
 
+/// Whether a right pair was refused: its support was, or it did not become active, whatever the cause. One that lies on
+/// a rest cannot move both ways, so its motors do not pass their trial: of it the support alone counts.
+bool is_refused(const Run& run) {
+  return is_doubted(run.arming) || (run.wrong.before != arming::Before::rests && !run.arming.became_active());
+}
+
 void print(const Run& run, const char* what) {
   std::printf("%s: %s: %s\n", what, run.wrong.words.c_str(), words_of(run.arming).c_str());
 }
 
-int count_broken(const char* of, const std::vector<Run>& runs, bool all, bool (*broken)(const Arming&)) {
+int count_broken(const char* of, const std::vector<Run>& runs, bool all, bool (*broken)(const Run&)) {
   int bad = 0, armed = 0, refused = 0;
   double fastest = 0.0, farthest = 0.0, active = 0.0;
   for (const Run& run : runs) {
-    const bool is_bad = broken(run.arming);
+    const bool is_bad = broken(run);
     if (is_bad || all) print(run, is_bad ? "BROKEN" : "kept");
     bad += is_bad ? 1 : 0;
     armed += run.arming.became_active() ? 1 : 0;
@@ -85,12 +92,12 @@ int main(int count, char** arguments) {
   std::vector<ShippedPair> loose;
   for (const ShippedPair& pair : pairs) loose.push_back(unjudged(pair));
   const auto control = run_all(loose, rigs / 10, [&](std::size_t i) { return wrong_pair(pairs, seed, i); });
-  const auto leaps = std::count_if(control.begin(), control.end(), [](const Run& run) { return breaks(run.arming); });
+  const auto leaps = std::count_if(control.begin(), control.end(), breaks);
   std::printf("control, the first tenth of them without judgement: %ld of %zu broke the rule\n",
               static_cast<long>(leaps), control.size());
   if (!control.empty() && leaps == 0) ++bad;
   const auto right =
       run_all(pairs, nearly_right, [&](std::size_t i) { return nearly_right_pair(pairs, seed, i, 0.2); });
-  bad += count_broken("right", right, all, is_doubted);
+  bad += count_broken("right", right, all, [](const Run& run) { return breaks(run) || is_refused(run); });
   return bad == 0 ? 0 : 1;
 }

@@ -87,10 +87,19 @@ std::vector<ShippedPair> shipped_pairs(std::int64_t pose) {
   pairs.push_back(of_rig_file(pose));
   pairs.push_back(of_experiment("arm-tapping.toml with limits.toml", {"experiments/arms/limits.toml"}, {}, pose));
   pairs.push_back(of_experiment("the same with yam-pair.toml",
-                                {"experiments/arms/limits.toml", "experiments/arms/yam-pair.toml"}, {}, pose));
+                                {"experiments/arms/limits.toml", "experiments/arms/yam-pair.toml"},
+                                {{"rig.probe_torque.joint_5.torque_N_m", "0.4"}}, pose));
   pairs.push_back(of_experiment("the same with geared-pair.toml",
                                 {"experiments/arms/limits.toml", "experiments/arms/geared-pair.toml"},
-                                {{"rig.follower_gate.force_limit_N", "87.0"}}, pose));
+                                {{"rig.follower_gate.force_limit_N", "87.0"},
+                                 {"rig.probe_torque.joint_1.torque_N_m", "8.0"},
+                                 {"rig.probe_torque.joint_2.torque_N_m", "8.0"},
+                                 {"rig.probe_torque.joint_3.torque_N_m", "8.0"},
+                                 {"rig.probe_torque.joint_4.torque_N_m", "8.0"},
+                                 {"rig.probe_torque.joint_5.torque_N_m", "3.0"},
+                                 {"rig.probe_torque.joint_6.torque_N_m", "3.0"},
+                                 {"rig.probe_torque.joint_7.torque_N_m", "1.5"}},
+                                pose));
   return pairs;
 }
 

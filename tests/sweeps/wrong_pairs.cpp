@@ -19,6 +19,10 @@ using signal::Random;
 double factor(Random& random, double lower, double upper) {
   return std::exp(random.uniform(std::log(lower), std::log(upper)));
 }
+/// As drawn, where the pair can hang freely.
+Before kept_up(Before drawn, const ShippedPair& pair) {
+  return drawn == Before::hangs && !pair.hangs_freely() ? Before::held : drawn;
+}
 std::string rounded(double value) { return rounded_number(value); }
 
 Model with_masses(Model model, double by) {
@@ -73,8 +77,8 @@ WrongPair wrong_pair(const std::vector<ShippedPair>& pairs, std::int64_t seed, s
   const std::size_t kind = index % kinds, turn = index / kinds;
   WrongPair wrong;
   wrong.pair = turn % pairs.size();
-  wrong.before = static_cast<Before>(random.bits() % 3);
   const ShippedPair& pair = pairs[wrong.pair];
+  wrong.before = kept_up(static_cast<Before>(random.bits() % 3), pair);
   wrong.beliefs = truth_of(pair);
   Beliefs& beliefs = wrong.beliefs;
   const std::size_t nth = turn / pairs.size(), joints = pair.joints();
@@ -113,8 +117,8 @@ WrongPair nearly_right_pair(const std::vector<ShippedPair>& pairs, std::int64_t 
   Random random = Random(static_cast<std::uint64_t>(seed)).fork(1'000'000 + index);
   WrongPair wrong;
   wrong.pair = index % pairs.size();
-  wrong.before = static_cast<Before>(index / pairs.size() % 3);
   const ShippedPair& pair = pairs[wrong.pair];
+  wrong.before = kept_up(static_cast<Before>(index / pairs.size() % 3), pair);
   wrong.beliefs = truth_of(pair);
   const Random of_leader = random.fork(1), of_follower = random.fork(station::differs(pair.setup.params.arm) ? 2 : 1);
   wrong.beliefs.leader = nearly_right(wrong.beliefs.leader, of_leader, share);

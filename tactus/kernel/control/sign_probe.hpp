@@ -41,8 +41,9 @@ struct ProbeReport {
 /// moved, mass, spring or damper, its first motion is along the force; where it goes later is not, so it is not looked
 /// at. Beyond `most_m` the force ends at once.
 ///
-/// A joint that is heavier, or rubs more, needs a larger force. If the device does not move, the trial is repeated with
-/// twice the force, up to `most_force_N`. So a free mass moves by less than 4·least_m in the trial that it passes,
+/// A joint that is heavier, or rubs more, needs a larger force. If the device does not move, or moves the same way
+/// whatever the force, as one that leans on its friction does under a small force, the trial is repeated with twice the
+/// force, up to `most_force_N`. So a free mass moves by less than 4·least_m in the trial that it passes,
 /// whatever its size, unless the first force is too large for it. The largest free mass that can pass is
 /// most_force_N·T²/(50·least_m).
 ///
@@ -162,7 +163,8 @@ class SignProbe {
       verdict_ = went_[0] < 0 && went_[1] <= 0 ? ProbeVerdict::reversed : ProbeVerdict::astray;
     } else if (time_s_ >= params_.duration_s) {
       const ProbeVerdict found = judge();
-      if (found == ProbeVerdict::still && peak_N_ < params_.most_force_N) {
+      const bool is_open = found == ProbeVerdict::still || found == ProbeVerdict::astray;
+      if (is_open && peak_N_ < params_.most_force_N) {
         peak_N_ = std::min(2.0 * peak_N_, params_.most_force_N);
         begin(position_m);
         return;

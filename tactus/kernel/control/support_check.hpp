@@ -134,12 +134,11 @@ class SupportCheck {
     excess_N_ = params_.damping_N_s_per_m * input.velocity_m_per_s - spring_N(input.position_m);
     if (!input.judged || (input.tried && !holds())) return SupportFault::none;
     if (std::fabs(moved_m_) > params_.most_m) return SupportFault::distance;
-    // The trial alone moves a joint whose damper is limited at its force over the damping, less what friction takes.
-    constexpr double trial_margin = 1.5;
-    const double by_trial_m_per_s = input.tried && params_.damping_N_s_per_m > 0.0
-                                        ? trial_margin * params_.least_force_N / params_.damping_N_s_per_m
-                                        : 0.0;
-    if (std::fabs(speed_m_per_s_) > std::max(params_.most_m_per_s, by_trial_m_per_s)) return SupportFault::speed;
+    // The trial moves a joint at up to three quarters of `most_m_per_s`, which a position in coarse steps overstates.
+    constexpr double trial_margin = 1.25, most_ever_m_per_s = 0.5;
+    const double most_m_per_s =
+        input.tried ? std::min(trial_margin * params_.most_m_per_s, most_ever_m_per_s) : params_.most_m_per_s;
+    if (std::fabs(speed_m_per_s_) > most_m_per_s) return SupportFault::speed;
     // What a trial accelerates is in the excess, up to the force of the trial.
     const double most_N = may_be_N + (input.tried ? params_.least_force_N : 0.0);
     return std::fabs(excess_N_) > most_N ? SupportFault::force : SupportFault::none;

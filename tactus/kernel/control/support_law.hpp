@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tactus/kernel/control/sign_probe.hpp>
 #include <tactus/kernel/control/support_check.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::control {
 
@@ -31,6 +33,30 @@ inline SupportCheck::Params with_holding_law(SupportCheck::Params asked, const H
   asked.stiffness_N_per_m = stiffness;
   asked.damping_N_s_per_m = damping;
   asked.least_force_N = from.trial_force_N;
+  return asked;
+}
+
+/// `asked` with a first force that moves no joint which `held` damps beyond what is judged, whatever its mass and
+/// however little it rubs; the force is doubled up to the one asked for while the joint does not move both ways.
+///
+/// Under a lobe of length L = duration_s/5 and peak F, a mass with the damper B reaches at most F/B, and goes
+/// F·L/(2·B). The first force keeps the former within three quarters of `most_m_per_s` and the latter within three
+/// quarters of `most_m`. A repeated one exceeds what rubs at the joint by little more than the friction itself. The
+/// trial is shortened, to 0.2 s at most, so that the force asked for goes no farther than half of `most_m`: friction
+/// that bears part of the weight makes each half go farther one way than back. It stays long enough for a quarter of
+/// that force to move `inertia` by `least_m`. That is a number of the model: where it is too large the trial is as long
+/// as was asked for, and where it is too small the joint may not move. Without damper all stays as it is.
+inline SignProbe::Params with_gentle_trial(SignProbe::Params asked, const SupportCheck::Params& held, double inertia) {
+  constexpr double share = 0.75, share_of_repeated = 0.5, lobes = 5.0, shortest_s = 0.2;
+  const double damping = held.damping_N_s_per_m;
+  if (damping == 0.0 || asked.force_N == 0.0) return asked;
+  asked.most_force_N = std::max(asked.force_N, asked.most_force_N);
+  const double wanted_s = 2.0 * lobes * share_of_repeated * held.most_m * damping / asked.most_force_N;
+  const double for_inertia_s = std::sqrt(4.0 * 50.0 * asked.least_m * inertia / asked.most_force_N);
+  asked.duration_s = std::min(asked.duration_s, std::max({wanted_s, for_inertia_s, shortest_s}));
+  const double half_lobe_s = 0.5 * asked.duration_s / lobes;
+  const double speed_m_per_s = share * std::min(held.most_m_per_s, held.most_m / half_lobe_s);
+  asked.force_N = std::min(asked.force_N, speed_m_per_s * damping);
   return asked;
 }
 

@@ -101,15 +101,19 @@ Joints<double> own_damping(const ArmTeleoperatorParams& params, const DescribedA
   return damping;
 }
 
-/// How the support of each of the arm's joints is judged.
+/// How the support of each of the arm's joints is judged, and with which torque its motor is tried first.
 void judge_support(const ArmTeleoperatorParams& params, const DescribedArms& arms, bool leads,
                    const Joints<SafetyGate::Params>& gates, const Joints<DeviceLimits>& limits,
                    Joints<control::SupervisionParams>& supervision) {
   const ArmSupportParams& asked = params.rig.support;
   const auto damping = own_damping(params, arms, leads);
-  const auto& chain = (leads ? arms.leader : arms.follower).arm.chain;
+  const DescribedArm& arm = leads ? arms.leader : arms.follower;
+  const auto& chain = arm.arm.chain;
+  const auto model = arm::Chain::make(chain);
+  if (!model) return;  // the site reports what is wrong with it
+  const arm::JointVector inertia = model->mass_matrix(arm.start).diagonal();
   for (std::size_t i = 0; i < damping.size(); ++i) {
-    const auto& probe = supervision[i].probe;
+    control::SignProbe::Params& probe = supervision[i].probe;
     supervision[i].support = control::with_holding_law(
         {.raise_s = asked.raise_s,
          .weight_share = asked.weight_share,
@@ -121,6 +125,7 @@ void judge_support(const ArmTeleoperatorParams& params, const DescribedArms& arm
          .force_limit_N = gates[i].force_limit_N,
          .trial_force_N = std::max(probe.force_N, probe.most_force_N)},
         Seconds{1.0 / params.servo.rate_Hz});
+    probe = control::with_gentle_trial(probe, supervision[i].support, inertia[static_cast<Eigen::Index>(i)]);
   }
 }
 
@@ -161,6 +166,12 @@ Result<Begun> begin(const ArmTeleoperatorParams& params, const DescribedArms& ar
   }
   Begun begun{
       .of_arm = of_arm, .tick = tick, .gates = joint_gates(gate, limits), .supervision = *std::move(supervised)};
+  for (std::size_t i = 0; i < joints; ++i) {
+    // No motor is tried with more than its gate lets through: leader and follower share a file, not their motors.
+    control::SignProbe::Params& probe = begun.supervision[i].probe;
+    probe.force_N = std::min(probe.force_N, begun.gates[i].force_limit_N);
+    probe.most_force_N = std::min(probe.most_force_N, begun.gates[i].force_limit_N);
+  }
   if (start.tries_motors) {
     const DescribedArm& arm = leads ? arms.leader : arms.follower;
     if (Check weak = check_probes(arm, begun.supervision, begun.gates)) return *std::move(weak);
