@@ -51,12 +51,15 @@ TEST(OwnWall, AForceOfTwoLevelsIsSwitched) {
 }
 
 TEST(OwnWall, AForceOfAnotherOriginIsNotExplained) {
-  const auto other = found(made(1, [](double, std::size_t i) { return std::sin(0.09 * static_cast<double>(i)); }));
+  const auto other =
+      found(made(1, [](double, std::size_t i) { return 1.0 + std::sin(0.09 * static_cast<double>(i)); }));
   ASSERT_TRUE(other);
   EXPECT_LT(other->explained, 0.3);
-  const auto attracts = found(made(10, [](double x, std::size_t) { return -1000.0 * x; }));
+  const auto attracts = found(made(10, [](double x, std::size_t) { return std::max(0.0, -1000.0 * x); }));
   ASSERT_TRUE(attracts);
   EXPECT_LT(attracts->explained, 0.1);
+  EXPECT_FALSE(found(made(10, [](double x, std::size_t) { return std::clamp(3000.0 * x, -2.0, 2.0); })))
+      << "a coupling that reaches its limits on both sides is no wall";
   EXPECT_FALSE(found(made(1, [](double, std::size_t) { return 1.0; })));
 }
 

@@ -15,8 +15,8 @@ constexpr double untested = 0.5;
 constexpr double least_score = 0.55;  ///< more than untested
 constexpr double least_lead = 0.25;
 constexpr double usual_tremor_m = 1.5e-4, usual_tremor_rad = 3e-3;
-constexpr double deliberate_below_Hz = 3.0;
-constexpr double ends_below = 0.3;  ///< of the speed of the person's slower motion
+constexpr double deliberate_below_Hz = 3.2;  ///< people lead at up to 3 Hz
+constexpr double ends_below = 0.3;           ///< of the speed of the person's slower motion
 /// The largest tremor of 97 healthy hands had a peak of 0.035 g at its main frequency (Wade, Gresty and Findley, A
 /// normative study of postural tremor of the hand, Archives of Neurology 39(6), 1982): 0.18 mm at 7 Hz. Ten times as
 /// much is accepted without doubt, thirty times as much is no hand's. The lever is that of `usual_tremor_rad`.

@@ -45,17 +45,16 @@ std::size_t hold_of(const std::vector<std::size_t>& changes) {
   return static_cast<double>(alike) >= most * static_cast<double>(lengths.size()) ? usual : 1;
 }
 
-/// Nearly always at its smallest or at its largest value, exactly, and often at both. No measured force rests so.
+/// Nearly always off or at its largest value, exactly, and often at both. No measured force rests so.
 bool is_switched(std::span<const double> force) {
   constexpr double nearly_always = 0.85, often = 0.1;
-  const auto [least, most] = std::minmax_element(force.begin(), force.end());
-  const double n = static_cast<double>(force.size()), margin = 1e-9 * (*most - *least);
-  const double low = *least + margin, high = *most - margin;
-  const auto at_low =
-      static_cast<double>(std::count_if(force.begin(), force.end(), [=](double f) { return f <= low; }));
-  const auto at_high =
-      static_cast<double>(std::count_if(force.begin(), force.end(), [=](double f) { return f >= high; }));
-  return at_low > often * n && at_high > often * n && at_low + at_high > nearly_always * n;
+  const double most = *std::max_element(force.begin(), force.end()), margin = 1e-9 * most;
+  const double n = static_cast<double>(force.size());
+  const auto off =
+      static_cast<double>(std::count_if(force.begin(), force.end(), [=](double f) { return std::abs(f) <= margin; }));
+  const auto on =
+      static_cast<double>(std::count_if(force.begin(), force.end(), [=](double f) { return f >= most - margin; }));
+  return most > 0.0 && off > often * n && on > often * n && off + on > nearly_always * n;
 }
 
 /// Share of the variance of `force` that a step at the best place in `position` explains, larger beyond it.
@@ -107,6 +106,10 @@ double explained_by_spring(const std::vector<double>& force, const std::vector<d
 std::optional<OwnWall> find_own_wall(std::span<const double> force, std::span<const double> position,
                                      double frequency_Hz, Seconds dt) {
   constexpr double latest_s = 0.02, part_of_period = 1.0 / 6.0;
+  // A wall pushes back and never pulls.
+  constexpr double hardly = 0.05;
+  const auto [least, most] = std::minmax_element(force.begin(), force.end());
+  if (!(*most > 0.0) || *least < -hardly * *most) return std::nullopt;
   const std::vector<std::size_t> changes = changes_of(force);
   if (changes.size() < fewest_updates / 2) return std::nullopt;
   OwnWall wall{.switched = is_switched(force)};

@@ -186,6 +186,8 @@ def led_recordings(count, seed):
         if i % 3 == 1:
             rig.update(architecture=POSITION_POSITION, coupling_N_per_m=0.2 * rig["servo_N_per_m"], coupling_N_s_per_m=1.0,
                        there_steps=int(random.integers(0, 40)), back_steps=int(random.integers(0, 40)))
+        # With coarse counts some of these rigs really chatter by one count while they wait: a limit cycle.
+        rig.update(leader_count_m=1e-6, follower_count_m=1e-6)
         rig.update(wall_m=0.0 if in_contact else 0.6, force_gain=random.uniform(0.0, 0.3), wall_N_per_m=random.uniform(300, 1500),
                    hand_N_per_m=random.uniform(200.0, 600.0), hand_N_s_per_m=random.uniform(8.0, 20.0),
                    tremor_N=random.uniform(0.003, 0.03))
