@@ -79,6 +79,7 @@ TEST(Decide, NamesEachMechanismByWhatItMustShow) {
 
   Evidence counts = slave_alone();
   counts.slave_steps = 1.0;
+  counts.slave_turns = 1.0;
   EXPECT_EQ(named(counts, 90.0), Mechanism::quantisation);
 
   Evidence sticks = slave_alone();
@@ -95,6 +96,82 @@ TEST(Decide, NamesEachMechanismByWhatItMustShow) {
   hand.actuator_gives = -0.3;
   hand.wander = 0.4;
   EXPECT_EQ(named(hand, 8.0), Mechanism::tremor);
+}
+
+TEST(Decide, QuantisationGoesToAndFroByHalfACountOrMore) {
+  Evidence counts = slave_alone();
+  counts.slave_steps = 1.0;
+  counts.slave_turns = 1.0;
+  EXPECT_EQ(named(counts, 24.0), Mechanism::quantisation);
+  counts.slave_turns = 0.0;  // a slow motion through counts has a line at its speed over the count
+  EXPECT_NE(named(counts, 24.0), Mechanism::quantisation);
+  EXPECT_TRUE(decide(everything(), line(24.0), counts).harmless);
+  counts.slave_turns = 1.0;
+  counts.slave_steps = 0.0;
+  EXPECT_NE(named(counts, 24.0), Mechanism::quantisation);
+}
+
+TEST(Decide, ATremorIsNoLargerThanAHandCanShake) {
+  Evidence hand = in_contact();
+  hand.contact = 0.0;
+  hand.actuator_gives = -0.3;
+  hand.wander = 0.4;
+  EXPECT_EQ(named(hand, 8.0), Mechanism::tremor);
+  hand.amplitude[0] = 0.023;  // 58 m/s2 at 8 Hz
+  EXPECT_NE(named(hand, 8.0), Mechanism::tremor);
+}
+
+TEST(Decide, WhatExplainsTheForceOutranksWhatFitsTheBand) {
+  Evidence evidence = in_contact();
+  evidence.contact = 0.2;
+  evidence.actuator_gives = 0.19;
+  evidence.wander = 0.01;
+  evidence.delay_there_s = evidence.delay_back_s = 0.042;
+  evidence.coupling_explains = 0.99;
+  evidence.tip_explains = 0.6;
+  EXPECT_EQ(named(evidence, 9.4), Mechanism::delay);
+  // The same where the tip force explains it: the slave is in contact, and that force comes back.
+  evidence.contact = 0.9;
+  evidence.actuator_gives = 0.35;
+  evidence.coupling_explains = 0.7;
+  evidence.tip_explains = 0.99;
+  EXPECT_EQ(named(evidence, 9.4), Mechanism::induced_motion);
+}
+
+TEST(Decide, AVirtualWallNeedsNoSlaveAndNoContact) {
+  Signals signals{.channels = {}, .sample_time = Seconds{1e-3}, .samples = 8000, .rotary = false};
+  signals.channels[0] = signals.channels[2] = Channel{.name = "x", .values = {}, .step = 1e-5};
+  Evidence wall;
+  wall.amplitude = {1.3e-3, {}, 2.5, {}, {}, {}};
+  wall.master_steps = 50.0;
+  wall.actuator_gives = 0.35;
+  wall.own_wall = OwnWall{.explained = 0.99, .delay_s = 5e-3, .held_s = 0.01, .switched = false};
+  EXPECT_EQ(decide(signals, line(14.0), wall).mechanism, Mechanism::virtual_wall);
+  wall.own_wall->explained = 0.8;
+  EXPECT_EQ(decide(signals, line(14.0), wall).mechanism, Mechanism::unknown);
+  // A recorded tip force that explains the force as well makes it that of a contact.
+  Evidence contact = in_contact();
+  contact.own_wall = OwnWall{.explained = 0.99, .delay_s = 5e-3, .held_s = 0.01, .switched = false};
+  contact.tip_explains = 0.99;
+  EXPECT_EQ(named(contact, 80.0), Mechanism::induced_motion);
+}
+
+TEST(Decide, WhatTheTipMovesIsNoContactThatShakes) {
+  Evidence evidence = in_contact();
+  EXPECT_EQ(named(evidence, 20.0), Mechanism::induced_motion);
+  evidence.tip_gives = 0.8;
+  EXPECT_EQ(named(evidence, 20.0), Mechanism::unknown);
+}
+
+TEST(Decide, NoiseInWhichNothingMovesIsHarmless) {
+  Evidence noise = in_contact();
+  noise.line_of_motion = 0.003;
+  noise.wander = 0.4;
+  Oscillation in_force = line(24.0);
+  in_force.signal = "tip force";
+  EXPECT_TRUE(decide(everything(), in_force, noise).harmless);
+  noise.line_of_motion = 0.5;
+  EXPECT_FALSE(decide(everything(), in_force, noise).harmless);
 }
 
 TEST(Decide, AHandThatTakesEnergyHasNoTremorAndOneThatGivesItHas) {

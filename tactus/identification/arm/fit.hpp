@@ -3,6 +3,7 @@
 
 #include <tactus/identification/arm/model.hpp>
 #include <tactus/identification/arm/parameters.hpp>
+#include <tactus/identification/arm/payload.hpp>
 #include <tactus/identification/arm/recording.hpp>
 #include <tactus/identification/arm/urdf_check.hpp>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/identification/arm/rows_fit.hpp>
+#include <tactus/identification/arm/internal/urdf_residual.hpp>
 #include <tactus/identification/arm/urdf_check.hpp>
-#include <tactus/kernel/signal/decompositions.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +8,6 @@
 #include <cstdio>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -25,102 +23,6 @@ constexpr double clearly_better = 0.5;  ///< of the squares that are left: what 
 constexpr double worth_having = 0.01;   ///< of a joint's squares, summed over joints, at least
 constexpr double one_more = 0.7;        ///< of what one change leaves: what two must bring it to
 constexpr int most_changes = 3;
-constexpr double farthest_payload_m = 2.0;
-
-/// Columns that every joint has of its own: acceleration, direction, velocity, 1. The first three cannot be negative.
-constexpr Index own_columns = 4;
-
-/// Inner products of torques, own columns and the effort of a joint.
-MatrixXd products(const ArmData& data, const MatrixXd& torques, int motion_of, int effort_of) {
-  MatrixXd all(data.rows(), torques.cols() + own_columns + 1);
-  all << torques, data.acceleration.col(motion_of), data.friction(motion_of, {}, false).turned,
-      data.velocity.col(motion_of), VectorXd::Ones(data.rows()), data.effort.col(effort_of);
-  return all.transpose() * all;
-}
-
-/// The share of the effort's squares that is left if torques are mixed by `mix`.
-double left_of(const MatrixXd& products_of_all, const VectorXd& mix, double sign, bool torques, bool offset = true) {
-  const Index count = mix.size();
-  MatrixXd into = MatrixXd::Zero(own_columns + 2, products_of_all.cols());
-  into.row(0).head(count) = mix.transpose();
-  into.block(1, count, own_columns, own_columns).setIdentity();
-  into(own_columns + 1, count + own_columns) = sign;
-  // Torques with their own scale go to the effort's side.
-  if (torques) into.row(own_columns + 1).head(count) = -mix.transpose();
-  const MatrixXd sums = into * products_of_all * into.transpose();
-  const double squares = products_of_all(count + own_columns, count + own_columns);
-  const Index target = own_columns + 1;
-  std::vector<Index> used;
-  for (Index k = torques ? 1 : 0; k < own_columns + 1; ++k) {
-    if (sums(k, k) > 0.0 && (offset || k < own_columns)) used.push_back(k);
-  }
-  while (!used.empty()) {
-    const auto size = static_cast<Index>(used.size());
-    MatrixXd normal(size, size);
-    VectorXd right(size), length(size);
-    for (Index a = 0; a < size; ++a)
-      length[a] = std::sqrt(sums(used[static_cast<std::size_t>(a)], used[static_cast<std::size_t>(a)]));
-    for (Index a = 0; a < size; ++a) {
-      const Index row = used[static_cast<std::size_t>(a)];
-      right[a] = sums(row, target) / length[a];
-      for (Index b = 0; b < size; ++b) {
-        normal(a, b) = sums(row, used[static_cast<std::size_t>(b)]) / (length[a] * length[b]);
-      }
-      normal(a, a) += 1e-9;
-    }
-    const VectorXd found = signal::solve_definite(normal, right);
-    Index worst = -1;
-    for (Index a = 0; a < size; ++a) {
-      const bool any_sign = used[static_cast<std::size_t>(a)] == own_columns;  // the offset
-      if (!any_sign && found[a] < 0.0 && (worst < 0 || found[a] < found[worst])) worst = a;
-    }
-    if (worst < 0) return std::max(0.0, sums(target, target) - found.dot(right)) / std::max(squares, 1e-300);
-    used.erase(used.begin() + worst);
-  }
-  return sums(target, target) / std::max(squares, 1e-300);
-}
-
-/// Torques that the URDF's bodies need in what was recorded, a column for each joint.
-MatrixXd torques_of(const ArmData& data, const arm::Chain::Params& urdf, const std::vector<int>& position_of) {
-  const arm::Chain chain = *arm::Chain::make(urdf);
-  const auto count = static_cast<Index>(position_of.size());
-  MatrixXd all(data.rows(), count);
-  Index first = 0;
-  for (const ArmMotion& motion : data.motions()) {
-    all.middleRows(first, motion.rows()) = motion.of_motion(
-        count, [&](const VectorXd& q, const VectorXd& v, const VectorXd& a, Eigen::Ref<VectorXd> values) {
-          arm::JointVector position(count), velocity(count), acceleration(count);
-          for (Index j = 0; j < count; ++j) {
-            const auto from = static_cast<Index>(position_of[static_cast<std::size_t>(j)]);
-            position[j] = q[from], velocity[j] = v[from], acceleration[j] = a[from];
-          }
-          // What armatures the URDF has is in the joint's own columns.
-          values = chain.inverse_dynamics(position, velocity, acceleration);
-        });
-    first += motion.rows();
-  }
-  return all;
-}
-
-arm::Chain::Params without_armatures(arm::Chain::Params urdf) {
-  for (arm::JointParams& joint : urdf.joints) joint.drive = {};
-  return urdf;
-}
-
-double total(const std::vector<double>& shares) {
-  return std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, double s) { return sum + s * s; });
-}
-
-std::vector<double> left_with(const ArmData& data, const MatrixXd& needed, const Assumption& assumption, bool torques,
-                              bool offset = true) {
-  std::vector<double> left;
-  for (int j = 0; j < data.joints(); ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    const MatrixXd sums = products(data, needed.col(j), assumption.position_of[at], assumption.effort_of[at]);
-    left.push_back(std::sqrt(left_of(sums, VectorXd::Ones(1), assumption.effort_sign[at], torques, offset)));
-  }
-  return left;
-}
 
 /// Rates assumptions. Those that differ in their efforts alone share their torques, which are computed once.
 class Rating {
@@ -359,61 +261,6 @@ Assumption explain(const ArmData& data, const Assumption& stated, const std::vec
     best = std::move(found), least = found_left;
   }
   return best;
-}
-
-std::optional<Payload> find_payload(const ArmData& data, const arm::Chain::Params& urdf) {
-  constexpr Index shared = 4;       // mass, and mass times centre
-  constexpr Index own_columns = 3;  // no offset: it would take the place of the weight
-  constexpr double clearly = 0.25;  // of the squares that are left, of those without the payload
-  const Index count = data.joints();
-  const Index size = shared + own_columns * count;
-  const MatrixXd needed = torques_of(data, without_armatures(urdf), as_stated(urdf).position_of);
-  MatrixXd normal = MatrixXd::Zero(size, size);
-  VectorXd right = VectorXd::Zero(size);
-  std::vector<MatrixXd> columns;
-  for (Index j = 0; j < count; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    const VectorXd effort = data.effort.col(j);
-    const double weight = 1.0 / effort.squaredNorm();
-    MatrixXd all(data.rows(), shared + own_columns);
-    all << data.bodies[at].middleCols(arm::body_parameters * (count - 1), shared), data.acceleration.col(j),
-        data.friction(static_cast<int>(j), {}, false).turned, data.velocity.col(j);
-    const MatrixXd sums = weight * all.transpose() * all;
-    const VectorXd with = weight * all.transpose() * (effort - needed.col(j));
-    const Index place = shared + own_columns * j;
-    normal.topLeftCorner(shared, shared) += sums.topLeftCorner(shared, shared);
-    normal.block(0, place, shared, own_columns) = sums.topRightCorner(shared, own_columns);
-    normal.block(place, 0, own_columns, shared) = sums.bottomLeftCorner(own_columns, shared);
-    normal.block(place, place, own_columns, own_columns) = sums.bottomRightCorner(own_columns, own_columns);
-    right.head(shared) += with.head(shared);
-    right.segment(place, own_columns) = with.tail(own_columns);
-    columns.push_back(std::move(all));
-  }
-  VectorXd length = normal.diagonal().cwiseSqrt();
-  for (double& one : length) one = one > 0.0 ? 1.0 / one : 0.0;
-  MatrixXd scaled = length.asDiagonal() * normal * length.asDiagonal();
-  scaled.diagonal().array() += 1e-9;
-  const VectorXd found = length.asDiagonal() * signal::solve_definite(scaled, VectorXd(length.asDiagonal() * right));
-  Payload payload{.mass_kg = found[0]};
-  if (!(payload.mass_kg > 0.0)) return std::nullopt;
-  payload.centre_m = found.segment<3>(1) / payload.mass_kg;
-  if (payload.centre_m.norm() > farthest_payload_m) return std::nullopt;
-  const std::vector<double> without = left_with(data, needed, as_stated(urdf), true, false);
-  payload.left_without = *std::max_element(without.begin(), without.end());
-  double squares = 0.0;
-  for (Index j = 0; j < count; ++j) {
-    VectorXd own(shared + own_columns);
-    own << found.head(shared), found.segment(shared + own_columns * j, own_columns);
-    const VectorXd left = data.effort.col(j) - needed.col(j) - columns[static_cast<std::size_t>(j)] * own;
-    const double share = rms(left) / rms(data.effort.col(j));
-    payload.left = std::max(payload.left, share);
-    squares += share * share;
-  }
-  if (payload.left_without < much_left || payload.left > much_left) return std::nullopt;
-  // Offsets of the efforts that explain nearly as much are the simpler reason.
-  const double by_offsets = total(left_with(data, needed, as_stated(urdf), true));
-  if (squares > clearly * std::min(total(without), by_offsets)) return std::nullopt;
-  return payload;
 }
 
 }  // namespace tactus::arm_identification

@@ -4,7 +4,6 @@
 #include <tactus/identification/arm/data.hpp>
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,16 +43,5 @@ Assumption explain(const ArmData& data, const Assumption& stated, const std::vec
 arm::Gravity best_gravity(const ArmData& data, const Assumption& assumption, bool torques);
 /// How an option states it, to three digits: `9.81,0,0`.
 std::string text_of(const arm::Gravity& gravity);
-
-/// A mass on the last link that the URDF lacks.
-struct Payload {
-  double mass_kg = 0.0;
-  arm::Vector3 centre_m = arm::Vector3::Zero();  ///< in the frame of the last moving link
-  double left = 0.0;                             ///< share of the effort that is left at the worst joint, with it
-  double left_without = 0.0;                     ///< the same without it
-};
-/// Where the URDF's bodies alone leave more than 15 % of some effort and with a point mass less than that. Efforts are
-/// torques in N m.
-std::optional<Payload> find_payload(const ArmData& data, const arm::Chain::Params& urdf);
 
 }  // namespace tactus::arm_identification

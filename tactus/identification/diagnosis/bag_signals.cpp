@@ -320,7 +320,7 @@ Result<BagChannels> read_bag_channels(const SignalRoles& roles) {
                        .unit = one.signal->unit,
                        .named = one.named,
                        .values = at_common_steps(*one.signal),
-                       .step = step_of(one.signal->values)};
+                       .step = resolution_of(one.role, one.signal->values)};
     const BagSignal* const velocity = find(*bag, one.signal->topic, one.signal->joint, "velocity");
     if (is_position(one.role) && velocity != nullptr && !check_signal(roles, *velocity)) {
       channel.velocity = at_common_steps(*velocity);

@@ -17,7 +17,7 @@ struct BagChannel {
   std::string unit = {};
   bool named = false;                 ///< by the caller: its sign is as the bag has it
   std::vector<double> values = {};    ///< at equal steps; forces that nobody named are turned as `Role` states
-  double step = 0.0;                  ///< `step_of` the values of the messages
+  double step = 0.0;                  ///< `resolution_of` the values of the messages
   std::vector<double> velocity = {};  ///< of a position, where the bag has it
   std::string velocity_name = {};
 };

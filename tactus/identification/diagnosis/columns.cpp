@@ -103,6 +103,20 @@ double step_of(std::vector<double> values) {
   return *small;
 }
 
+double resolution_of(Role role, const std::vector<double>& values) {
+  constexpr std::size_t switched_levels = 3;
+  constexpr double resolved = 1e-3;
+  const double step = step_of(values);
+  if (is_position(role)) return step;
+  std::vector<double> different;
+  for (const double value : values) {
+    if (std::find(different.begin(), different.end(), value) != different.end()) continue;
+    different.push_back(value);
+    if (different.size() > switched_levels) return step;
+  }
+  return resolved * step;
+}
+
 std::string lower(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),

@@ -15,6 +15,10 @@ namespace tactus::diagnosis {
 
 constexpr std::size_t index_of(Role role) { return static_cast<std::size_t>(role); }
 
+/// `step_of`; less for a force that is switched between two or three levels, for it is not measured in steps of that
+/// size.
+double resolution_of(Role role, const std::vector<double>& values);
+
 /// In small letters, as names are compared.
 std::string lower(std::string_view text);
 

@@ -21,6 +21,8 @@ enum class Mechanism {
   quantisation,    ///< to and fro between neighbouring counts
   stick_slip,      ///< friction that sticks and slips
   tremor,          ///< the hand's own
+  virtual_wall,    ///< one device and a wall or spring that its controller makes of its position, too late for its
+                   ///< stiffness
   unknown,         ///< these signals do not determine
 };
 constexpr auto enumerators(Mechanism) {
@@ -30,6 +32,7 @@ constexpr auto enumerators(Mechanism) {
                     Enumerator{Mechanism::quantisation, "quantisation"},
                     Enumerator{Mechanism::stick_slip, "stick-slip"},
                     Enumerator{Mechanism::tremor, "tremor"},
+                    Enumerator{Mechanism::virtual_wall, "virtual-wall"},
                     Enumerator{Mechanism::unknown, "unknown"}};
 }
 std::string_view word_of(Mechanism mechanism);

@@ -3,6 +3,7 @@
 #include <tactus/identification/diagnosis/diagnosis.hpp>
 #include <tactus/identification/diagnosis/line.hpp>
 #include <tactus/identification/diagnosis/loop_gain.hpp>
+#include <tactus/identification/diagnosis/motor_power.hpp>
 
 #include <algorithm>
 #include <numbers>
@@ -55,6 +56,24 @@ std::string wrong_velocities(const Signals& signals) {
   return text;
 }
 
+/// The sign of the follower's motor force, or what is called the follower, is wrong.
+std::string doubted_motor(std::optional<double> phase_deg, const std::optional<Following>& following) {
+  constexpr double surely_from = 165.0, probably_from = 110.0, until = 255.0;
+  const bool leads = following && following->lag_s.upper < 0.0;
+  if (!phase_deg || *phase_deg < (leads ? probably_from : surely_from) || *phase_deg > until) return {};
+  std::string text =
+      "The follower's motor takes energy out of the follower, which moves nevertheless (its force leads the "
+      "velocity by " +
+      report::number(*phase_deg, 3) +
+      "°, where inertia and friction need 0 to 90°): the force has the opposite sign (turn it with "
+      "--slave-force-sign -1), or the columns of leader and follower are exchanged";
+  if (leads) {
+    text += "; that the follower moves " + report::number(-1e3 * following->lag_s.value, 2) +
+            " ms before the leader is evidence for the latter";
+  }
+  return text + ". No mechanism is named before that is corrected. ";
+}
+
 /// A hand that leads at one frequency, and the slave that follows it.
 std::string how_it_follows(const Finding& finding) {
   const double f_Hz = finding.oscillation.frequency_Hz;
@@ -93,6 +112,14 @@ std::string verdict_of(const Signals& signals, const std::vector<Finding>& findi
             "): turn it down step by step; by as much is nearly always enough.";
   }
   return text;
+}
+
+/// A mechanism whose evidence rests on a sign that is in doubt is only possible.
+void withdraw(Decision& decision) {
+  if (decision.mechanism == Mechanism::unknown) return;
+  decision.possible = {decision.mechanism};
+  decision.mechanism = Mechanism::unknown;
+  decision.confidence = 0.0;
 }
 
 std::string_view tells(Role role) {
@@ -144,6 +171,8 @@ std::vector<std::string> record_next_of(const Signals& signals, const std::vecto
 
 Diagnosis diagnose(const Signals& signals) {
   Diagnosis diagnosis;
+  diagnosis.following = find_following(signals);
+  const std::string doubt = doubted_motor(motor_phase_deg(signals), diagnosis.following);
   std::string led;
   for (Oscillation& oscillation : find_oscillations(signals)) {
     Finding finding{.oscillation = std::move(oscillation), .evidence = {}, .decision = {}, .loop_gain = {}};
@@ -151,6 +180,7 @@ Diagnosis diagnose(const Signals& signals) {
     finding.decision = decide(signals, finding.oscillation, finding.evidence);
     if (finding.decision.led && led.empty()) led = how_it_follows(finding);
     if (finding.decision.harmless) continue;
+    if (!doubt.empty()) withdraw(finding.decision);
     const auto told = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
                                    [&](const Finding& before) { return goes_on(before, finding); });
     if (told != diagnosis.findings.end()) {
@@ -165,7 +195,7 @@ Diagnosis diagnose(const Signals& signals) {
     finding.loop_gain = loop_gain_of(signals, finding.oscillation, finding.decision.mechanism);
     diagnosis.findings.push_back(std::move(finding));
   }
-  diagnosis.verdict = wrong_velocities(signals) + verdict_of(signals, diagnosis.findings) + led;
+  diagnosis.verdict = wrong_velocities(signals) + doubt + verdict_of(signals, diagnosis.findings) + led;
   diagnosis.record_next = record_next_of(signals, diagnosis.findings);
   return diagnosis;
 }

@@ -4,6 +4,7 @@
 #include <tactus/identification/axis/axis_signals.hpp>
 #include <tactus/identification/diagnosis/decision.hpp>
 #include <tactus/identification/diagnosis/evidence.hpp>
+#include <tactus/identification/diagnosis/following.hpp>
 #include <tactus/identification/diagnosis/oscillation.hpp>
 #include <tactus/identification/diagnosis/signals.hpp>
 
@@ -26,6 +27,7 @@ struct Diagnosis {
   std::vector<Finding> findings;  ///< the strongest first
   std::string verdict;            ///< one or two sentences that a user can act on
   std::vector<std::string> record_next;
+  std::optional<Following> following;  ///< where both positions move together
 };
 
 /// What shakes in a recording and why. Not real-time safe.

@@ -28,6 +28,18 @@ double steps_within_a_period(std::span<const double> values, double frequency_Hz
   return *middle / step;
 }
 
+/// Steps up and steps down, whichever are fewer, in a period: about one for each count that is crossed to and fro, and
+/// none for a slow motion through counts.
+double turns_within_a_period(std::span<const double> values, double frequency_Hz, double step, Seconds dt) {
+  double up = 0.0, down = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double moved = values[i] - values[i - 1];
+    if (moved > 0.5 * step) up += 1.0;
+    if (moved < -0.5 * step) down += 1.0;
+  }
+  return std::min(up, down) / std::max(1.0, static_cast<double>(values.size()) * dt.value * frequency_Hz);
+}
+
 /// Share of the time in which something hardly moves.
 double share_of_standstill(std::span<const double> values, double frequency_Hz, double step, Seconds dt) {
   const auto over = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(0.04 / (frequency_Hz * dt.value))));
@@ -92,6 +104,13 @@ double slow_motion_after(std::span<const double> values, std::size_t from, std::
   const auto middle = after.begin() + static_cast<std::ptrdiff_t>(after.size() / 2);
   std::nth_element(after.begin(), middle, after.end());
   return *middle / std::sqrt(during);
+}
+
+/// What the coherence of so many blocks is beyond that of two signals that have nothing in common.
+double beyond_chance(double coherence, std::size_t blocks) {
+  if (blocks < 2) return coherence;
+  const auto n = static_cast<double>(blocks);
+  return std::max(0.0, (n * coherence - 1.0) / (n - 1.0));
 }
 
 /// Cosine of the angle between a force and the velocity that belongs to a position; 0 for a force that is less than the
@@ -164,6 +183,27 @@ Coupling fit_coupling(std::span<const double> force, std::span<const double> lea
   return best;
 }
 
+double explained_by_force(std::span<const double> force, std::span<const double> cause, double frequency_Hz,
+                          double longest_s, Seconds dt) {
+  constexpr std::size_t most_samples = 20'000;
+  const std::size_t samples = std::min(most_samples, force.size());
+  const auto longest = std::min(static_cast<std::size_t>(longest_s / dt.value), samples / 4);
+  const std::vector<double> f = without_slow(force.first(samples), frequency_Hz, dt);
+  const std::vector<double> c = without_slow(cause.first(samples), frequency_Hz, dt);
+  const auto [least, most] = std::minmax_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(samples));
+  const double margin = 0.03 * (*most - *least);
+  double best = 0.0;
+  for (std::size_t lag = 0; lag <= longest; ++lag) {
+    double ff = 0.0, cc = 0.0, fc = 0.0;
+    for (std::size_t i = longest; i < samples; ++i) {
+      if (force[i] > *most - margin) continue;
+      ff += f[i] * f[i], cc += c[i - lag] * c[i - lag], fc += f[i] * c[i - lag];
+    }
+    if (fc > 0.0 && ff > 0.0 && cc > 0.0) best = std::max(best, fc * fc / (ff * cc));
+  }
+  return best;
+}
+
 Evidence measure(const Signals& signals, const Oscillation& oscillation) {
   const Seconds dt = signals.sample_time;
   const double f_Hz = oscillation.frequency_Hz;
@@ -207,9 +247,11 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
   }
   if (const Channel* master = signals.find(Role::master_position); master != nullptr && !master->constant()) {
     found.master_steps = steps_within_a_period(part(Role::master_position), f_Hz, master->step, dt);
+    found.master_turns = turns_within_a_period(part(Role::master_position), f_Hz, master->step, dt);
   }
   if (const Channel* slave = signals.find(Role::slave_position); slave != nullptr && !slave->constant()) {
     found.slave_steps = steps_within_a_period(part(Role::slave_position), f_Hz, slave->step, dt);
+    found.slave_turns = turns_within_a_period(part(Role::slave_position), f_Hz, slave->step, dt);
     found.standstill = share_of_standstill(part(Role::slave_position), f_Hz, slave->step, dt);
   }
   if (has(Role::master_position)) {
@@ -233,12 +275,19 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
   }
   if (has(Role::tip_force)) {
     const Role motion = has(Role::slave_position) ? Role::slave_position : Role::master_position;
-    const double together = std::sqrt(relation(of(motion), of(Role::tip_force)).coherence);
+    const double together =
+        std::sqrt(beyond_chance(relation(of(motion), of(Role::tip_force)).coherence, of(motion).size()));
     const double size = *found.of(Role::tip_force);
     // Against what moves the slave. Where that was not recorded, against the least that the sensor tells.
-    const double against =
-        has(Role::slave_force) ? *found.of(Role::slave_force) : 10.0 * signals.find(Role::tip_force)->step;
+    // A digit of a file may be finer than any sensor: no master shows twenty times the force of the contact.
+    constexpr double largest_force_gain = 20.0;
+    const double least = std::max(10.0 * signals.find(Role::tip_force)->step,
+                                  found.of(Role::displayed_force).value_or(0.0) / largest_force_gain);
+    const double against = has(Role::slave_force) ? *found.of(Role::slave_force) : least;
     found.contact = against > 0.0 ? together * std::min(1.0, size / against) : 0.0;
+    if (has(Role::slave_position)) {
+      found.tip_gives = gives(of(Role::tip_force), -1.0, signals.find(Role::tip_force)->step, of(Role::slave_position));
+    }
   }
   if (has(Role::master_position) && has(Role::slave_position)) {
     // The stretch about the oscillation, for a coupling may change.
@@ -261,7 +310,26 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
       for (double& value : force) value = -value;
       const Coupling back = fit_coupling(force, about(Role::slave_position), scaled, longest_s, dt);
       if (back.explained > least_explained) found.delay_back_s = back.delay_s;
+      found.coupling_explains = back.explained;
+      if (has(Role::tip_force)) {
+        found.tip_explains =
+            explained_by_force(about(Role::displayed_force), about(Role::tip_force), f_Hz, longest_s, dt);
+      }
     }
+  }
+  if (has(Role::master_position) && has(Role::displayed_force)) {
+    found.own_wall = find_own_wall(part(Role::displayed_force), part(Role::master_position), f_Hz, dt);
+  }
+  const auto see = [&](std::span<const double> motion, double size, double step) {
+    if (size >= 0.5 * step) found.line_of_motion = std::max(found.line_of_motion, share_of_line(motion, f_Hz, dt));
+  };
+  for (const Role role : {Role::master_position, Role::slave_position}) {
+    if (has(role) && !signals.find(role)->constant()) see(part(role), *found.of(role), signals.find(role)->step);
+  }
+  if (const std::vector<double> error = following_error(signals); !error.empty()) {
+    const std::span<const double> seen = std::span(error).subspan(from, to - from);
+    see(seen, usual_size(line_in_blocks(seen, block_samples, f_Hz, dt)),
+        std::max(signals.find(Role::master_position)->step, signals.find(Role::slave_position)->step));
   }
   const bool slave_moves = has(Role::slave_position) && found.master_part.value_or(0.0) < 0.3;
   const Role moving = slave_moves || !has(Role::master_position) ? Role::slave_position : Role::master_position;

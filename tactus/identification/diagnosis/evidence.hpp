@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tactus/identification/diagnosis/oscillation.hpp>
+#include <tactus/identification/diagnosis/own_wall.hpp>
 #include <tactus/identification/diagnosis/signals.hpp>
 
 #include <array>
@@ -23,6 +24,8 @@ struct Evidence {
   std::optional<double> slave_behind_rad;
   /// Peak to peak within a period, in steps of the position's own column; the median over the blocks.
   std::optional<double> master_steps, slave_steps;
+  /// Turns to and fro in a period, one each way: the smaller number of steps up and down of the position's own column.
+  std::optional<double> master_turns, slave_turns;
   /// Share of the time in which the slave is at rest: slower than a tenth of what it reaches.
   std::optional<double> standstill;
   /// -1 to 1: how well a force is in line with the velocity of what it drives; positive: it gives energy at this
@@ -32,11 +35,21 @@ struct Evidence {
   /// 0 to 1: tip force over the force of the slave's motor at this frequency (where that is missing, over ten steps of
   /// the sensor), coherence with the motion counted in.
   std::optional<double> contact;
+  /// The same of the force of the environment on the slave; positive: whatever is at the slave's tip moves it, as no
+  /// contact at rest can.
+  std::optional<double> tip_gives;
   /// Transport delay to the slave and back, where a coupling by position explains the force.
   std::optional<double> delay_there_s, delay_back_s;
+  /// Share of the displayed force's variance that a coupling by position explains, and that the tip force of some time
+  /// before explains.
+  std::optional<double> coupling_explains, tip_explains;
+  /// Whether the displayed force is computed from the master's own position.
+  std::optional<OwnWall> own_wall;
   /// 0 to 1: share of the master's power above half of the frequency that is in the line; the median over stretches of
   /// six periods.
   std::optional<double> master_line;
+  /// The largest such share of a position or of the following error, of those that move by half a count or more.
+  double line_of_motion = 0;
   /// Speed of the master's slower motion after the oscillation, the median, over that during it, the root mean square.
   /// Empty where it lasts until a second before the end of the recording.
   std::optional<double> motion_after;
@@ -60,5 +73,10 @@ struct Coupling {
 /// most.
 Coupling fit_coupling(std::span<const double> force, std::span<const double> lead, std::span<const double> own,
                       double longest_s, Seconds dt);
+
+/// Share of the variance of a force that another one of 0 to `longest_s` before explains in proportion, both less what
+/// is slower than half of the frequency, where the first is not at its limits. Not real-time safe.
+double explained_by_force(std::span<const double> force, std::span<const double> cause, double frequency_Hz,
+                          double longest_s, Seconds dt);
 
 }  // namespace tactus::diagnosis

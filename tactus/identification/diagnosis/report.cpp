@@ -68,6 +68,24 @@ std::string colour_of(double share) {
   return text;
 }
 
+nlohmann::ordered_json json_of(const std::optional<Following>& following) {
+  using Json = nlohmann::ordered_json;
+  if (!following) return nullptr;
+  const auto& lag = following->lag_s;
+  Json one{{"lag_s", lag.value},
+           {"lag_interval_95_s", {lag.lower, lag.upper}},
+           {"moves_to_Hz", following->moves_to_Hz},
+           {"constant_delay_s", nullptr},
+           {"constant_delay_interval_s", nullptr},
+           {"bandwidth_Hz", nullptr}};
+  if (following->constant_s) {
+    one["constant_delay_s"] = following->constant_s->value;
+    one["constant_delay_interval_s"] = {following->constant_s->lower, following->constant_s->upper};
+  }
+  if (following->bandwidth_Hz) one["bandwidth_Hz"] = *following->bandwidth_Hz;
+  return one;
+}
+
 }  // namespace
 
 std::string to_text(const Signals& signals, const Diagnosis& diagnosis) {
@@ -78,6 +96,7 @@ std::string to_text(const Signals& signals, const Diagnosis& diagnosis) {
             finding.oscillation.signal + ":\n";
     for (const std::string& sentence : finding.decision.evidence) text += "  - " + sentence + "\n";
   }
+  if (diagnosis.following) text += text_of(*diagnosis.following, signals) + "\n";
   if (!diagnosis.record_next.empty()) text += "Record next:\n";
   for (const std::string& next : diagnosis.record_next) text += "  - " + next + "\n";
   std::string read;
@@ -118,6 +137,7 @@ std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const st
     one["possible"] = possible;
     document["oscillations"].push_back(std::move(one));
   }
+  document["following"] = json_of(diagnosis.following);
   document["recording"] = file;
   document["sample_time_s"] = signals.sample_time.value;
   document["samples"] = signals.samples;
@@ -249,8 +269,10 @@ std::string loop_of(const Signals& signals, const Finding& finding) {
   std::string text;
   text += "  hand      --( force     " + told(Role::hand_force) + " )" + mark({tremor}) + "\n";
   text += "    v\n";
-  text += "  master    --( position  " + told(Role::master_position) + " )" + mark({induced_motion, delay}) + "\n";
-  text += "    |  ^ displayed force  " + told(Role::displayed_force) + mark({induced_motion, delay}) + "\n";
+  text += "  master    --( position  " + told(Role::master_position) + " )" +
+          mark({induced_motion, delay, virtual_wall}) + "\n";
+  text +=
+      "    |  ^ displayed force  " + told(Role::displayed_force) + mark({induced_motion, delay, virtual_wall}) + "\n";
   text += "    v  |\n";
   text += "  slave     --( position  " + told(Role::slave_position) + " )" +
           mark({slave_servo, quantisation, stick_slip, induced_motion, delay}) + "\n";
@@ -276,6 +298,10 @@ report::Page to_page(const Signals& signals, const Diagnosis& diagnosis, const s
               "The loop: amplitude and phase at this frequency, the phase against the first position");
   }
   if (const auto figure = periods_of(signals, diagnosis)) page.figure(*figure);
+  if (diagnosis.following) {
+    page.heading("How the follower follows");
+    page.paragraph(text_of(*diagnosis.following, signals));
+  }
   if (!diagnosis.record_next.empty()) page.heading("Record next");
   for (const std::string& next : diagnosis.record_next) page.paragraph(next + ".");
   for (const std::string& note : signals.notes) page.paragraph("Note: " + note + ".");

@@ -111,17 +111,6 @@ struct Found {
   std::optional<bool> rotary;
 };
 
-/// Are there no more than so many different values?
-bool has_few_levels(const std::vector<double>& values, std::size_t most) {
-  std::vector<double> different;
-  for (const double value : values) {
-    if (std::find(different.begin(), different.end(), value) != different.end()) continue;
-    different.push_back(value);
-    if (different.size() > most) return false;
-  }
-  return true;
-}
-
 Check take(Found& found, const SignalRoles& roles, Role role, std::string name, const std::string& unit,
            std::vector<double> values) {
   const auto rotary = convert(roles, role, unit, values);
@@ -141,11 +130,7 @@ Check take(Found& found, const SignalRoles& roles, Role role, std::string name, 
                       std::to_string(found.signals.samples) + "; name columns of one length");
   }
   found.signals.samples = values.size();
-  double step = step_of(values);
-  // A force that is switched between two or three levels is not measured in steps of that size.
-  constexpr std::size_t switched_levels = 3;
-  constexpr double resolved = 1e-3;
-  if (!is_position(role) && has_few_levels(values, switched_levels)) step *= resolved;
+  const double step = resolution_of(role, values);
   found.signals.channels[index_of(role)] = Channel{.name = std::move(name), .values = std::move(values), .step = step};
   return std::nullopt;
 }
