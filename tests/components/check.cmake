@@ -6,7 +6,10 @@ cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../run.cmake)
 include(${SOURCE}/cmake/TactusComponents.cmake)
 
-set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=${BUILD_TYPE})
+# What is built is to build and to run once, so it is not optimised, and the compiler is known to work.
+string(TOUPPER "${BUILD_TYPE}" upper)
+set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_COMPILER_WORKS=ON
+              -D CMAKE_BUILD_TYPE=${BUILD_TYPE} "-DCMAKE_CXX_FLAGS_${upper}=-O0 -DNDEBUG")
 
 # What a component finds, in the words of CMake's cache.
 set(finds_kernel Eigen3_DIR)

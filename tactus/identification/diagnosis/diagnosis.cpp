@@ -56,9 +56,10 @@ std::string wrong_velocities(const Signals& signals) {
   return text;
 }
 
-/// The sign of the follower's motor force, or what is called the follower, is wrong.
+/// The sign of the follower's motor force, or what is called the follower, is wrong. A spring at the tip shows at 270
+/// degrees, less what its force is late by, so nothing within 45 degrees of it is doubted.
 std::string doubted_motor(std::optional<double> phase_deg, const std::optional<Following>& following) {
-  constexpr double surely_from = 165.0, probably_from = 110.0, until = 255.0;
+  constexpr double surely_from = 165.0, probably_from = 110.0, until = 225.0;
   const bool leads = following && following->lag_s.upper < 0.0;
   if (!phase_deg || *phase_deg < (leads ? probably_from : surely_from) || *phase_deg > until) return {};
   std::string text =
