@@ -22,6 +22,8 @@ constexpr double ends_below = 0.3;           ///< of the speed of the person's s
 /// much is accepted without doubt, thirty times as much is no hand's. The lever is that of `usual_tremor_rad`.
 constexpr double likely_tremor_mps2 = 3.4, largest_tremor_mps2 = 10.3, tremor_lever_m = 0.05;
 
+constexpr double explains_well = 0.9;  ///< of the variance of a force
+
 /// 0 at `from`, 1 at `to`, a straight line between; either may be the larger.
 double ramp(double value, double from, double to) { return std::clamp((value - from) / (to - from), 0.0, 1.0); }
 std::optional<double> ramp(const std::optional<double>& value, double from, double to) {
@@ -56,9 +58,11 @@ struct Shown {
 std::optional<double> own_wall_of(const Evidence& evidence) {
   if (!evidence.own_wall) return std::nullopt;
   const OwnWall& wall = *evidence.own_wall;
+  // Within one line any position explains a force in some phase, so a coupling that explains it well outranks a wall.
   constexpr double as_good = 0.02;
+  const double coupling = evidence.delay_back_s ? evidence.coupling_explains.value_or(0.0) : 0.0;
   const bool of_another = evidence.tip_explains.value_or(0.0) > wall.explained - as_good ||
-                          (evidence.delay_back_s && evidence.coupling_explains.value_or(0.0) > wall.explained);
+                          coupling > std::min(wall.explained, explains_well);
   if (of_another) return 0.0;
   // A force that is switched, or held while the device moves, is no measured one. Any other has to be exact.
   if (wall.switched) return ramp(wall.explained, 0.4, 0.65);
@@ -102,7 +106,6 @@ Shown shown_by(const Signals& signals, const Oscillation& oscillation, const Evi
     const double round_trip_s = (has_there ? there_s : back_s) + (has_back ? back_s : there_s);
     shown.delayed = ramp(2.0 * std::numbers::pi * f_Hz * round_trip_s, 0.3, 0.8);
     // A coupling that leaves more of the force than the master's own position does is in doubt.
-    constexpr double explains_well = 0.9;
     const double explained = evidence.coupling_explains.value_or(1.0);
     if (explained < explains_well && evidence.own_wall && evidence.own_wall->explained > explained) {
       shown.delayed = std::min(*shown.delayed, untested);

@@ -75,6 +75,14 @@ std::string doubted_motor(std::optional<double> phase_deg, const std::optional<F
   return text + ". No mechanism is named before that is corrected. ";
 }
 
+/// Within an oscillation a lag cannot be told from one of a period more or less.
+bool is_ambiguous(const std::optional<Following>& following, const std::vector<Finding>& findings) {
+  return following && std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+           const double lag_s = following->lag_s.value;
+           return lag_s < 0.0 || lag_s > 0.5 / finding.oscillation.frequency_Hz;
+         });
+}
+
 /// A hand that leads at one frequency, and the slave that follows it.
 std::string how_it_follows(const Finding& finding) {
   const double f_Hz = finding.oscillation.frequency_Hz;
@@ -196,6 +204,7 @@ Diagnosis diagnose(const Signals& signals) {
     finding.loop_gain = loop_gain_of(signals, finding.oscillation, finding.decision.mechanism);
     diagnosis.findings.push_back(std::move(finding));
   }
+  if (is_ambiguous(diagnosis.following, diagnosis.findings)) diagnosis.following.reset();
   diagnosis.verdict = wrong_velocities(signals) + doubt + verdict_of(signals, diagnosis.findings) + led;
   diagnosis.record_next = record_next_of(signals, diagnosis.findings);
   return diagnosis;

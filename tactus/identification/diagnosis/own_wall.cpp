@@ -109,7 +109,7 @@ std::optional<OwnWall> find_own_wall(std::span<const double> force, std::span<co
   // A wall pushes back and never pulls.
   constexpr double hardly = 0.05;
   const auto [least, most] = std::minmax_element(force.begin(), force.end());
-  if (!(*most > 0.0) || *least < -hardly * *most) return std::nullopt;
+  if (!(*most > 0.0) || *least < -hardly * *most) return OwnWall{};
   const std::vector<std::size_t> changes = changes_of(force);
   if (changes.size() < fewest_updates / 2) return std::nullopt;
   OwnWall wall{.switched = is_switched(force)};

@@ -21,8 +21,8 @@ struct OwnWall {
 };
 
 /// How well a wall explains the force that pushes the device back. The position may be late by 20 ms at most, and by no
-/// more than a sixth of a period of `frequency_Hz`. None for a force that does not change or
-/// that pulls: a wall only pushes back. Not real-time safe.
+/// more than a sixth of a period of `frequency_Hz`. A force that pulls is explained by 0, for a wall only pushes back.
+/// None for a force that hardly changes. Not real-time safe.
 std::optional<OwnWall> find_own_wall(std::span<const double> force, std::span<const double> position,
                                      double frequency_Hz, Seconds dt);
 
