@@ -29,7 +29,7 @@ constexpr double log_friction_deviation = 2.0;
 constexpr double log_turning_deviation = 1.5;
 constexpr double usual_load_share = 0.02;
 constexpr double known = 1e-9;
-constexpr int most_steps = 1000;
+constexpr int most_fit_steps = 1000;
 constexpr double longest_step = 1.0;  ///< of any coordinate, in deviations of the prior
 constexpr double settled = 1e-3;      ///< gain of the sum of squares over the noise's that tells nothing any more
 
@@ -286,7 +286,7 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
   VectorXd x = problem.centre;
   double cost = cost_of(problem, x);
   double damping = 1e-3;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < most_fit_steps; ++step) {
     const auto [curvature, pull] = normal_equations(problem, x);
     bool better = false;
     double gained = 0.0;

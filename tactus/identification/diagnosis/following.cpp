@@ -233,7 +233,7 @@ std::optional<Following> find_following(const Signals& signals) {
 }
 
 std::string text_of(const Following& following, const Signals& signals) {
-  constexpr double slow_rate_Hz = 100.0, a_part = 0.15;
+  constexpr double low_rate_Hz = 100.0, a_part = 0.15;
   const double lag_s = following.lag_s.value, dt_s = signals.sample_time.value, rate_Hz = 1.0 / dt_s;
   constexpr double undetermined = 0.5;
   const double half_s = 0.5 * (following.lag_s.upper - following.lag_s.lower);
@@ -265,7 +265,7 @@ std::string text_of(const Following& following, const Signals& signals) {
             ": if the control loop runs at the rate of the recording, holding each command " + "for one sample adds " +
             ms(0.5 * dt_s) + " to the lag, and computing it one cycle later " + ms(dt_s) + ".";
   }
-  if (rate_Hz < slow_rate_Hz) {
+  if (rate_Hz < low_rate_Hz) {
     text += " At " + report::number(rate_Hz, 2) + " samples a second the lag and motion below " +
             report::number(0.2 * rate_Hz, 2) + " Hz can be judged. What oscillates faster than " +
             report::number(0.5 * rate_Hz, 2) +

@@ -105,7 +105,7 @@ double explained_by_spring(const std::vector<double>& force, const std::vector<d
 
 std::optional<OwnWall> find_own_wall(std::span<const double> force, std::span<const double> position,
                                      double frequency_Hz, Seconds dt) {
-  constexpr double latest_s = 0.02, part_of_period = 1.0 / 6.0;
+  constexpr double longest_delay_s = 0.02, part_of_period = 1.0 / 6.0;
   // A wall pushes back and never pulls.
   constexpr double hardly = 0.05;
   const auto [least, most] = std::minmax_element(force.begin(), force.end());
@@ -115,8 +115,8 @@ std::optional<OwnWall> find_own_wall(std::span<const double> force, std::span<co
   OwnWall wall{.switched = is_switched(force)};
   const std::size_t hold = wall.switched ? 1 : hold_of(changes);
   if (hold > 1) wall.held_s = static_cast<double>(hold) * dt.value;
-  const auto latest =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::min(latest_s, part_of_period / frequency_Hz) / dt.value));
+  const auto latest = std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::min(longest_delay_s, part_of_period / frequency_Hz) / dt.value));
   std::vector<std::size_t> updates;
   // Of a force that is held each new value, else every sample.
   for (std::size_t i = latest; i < force.size(); ++i) {
