@@ -18,6 +18,17 @@ if test -e /proc/self/autogroup; then
     fail 'the session does not count least'
 fi
 
+# Beside a session that keeps every core busy it counts as much as any.
+if test -e /proc/self/autogroup; then
+  setsid sh -c 'for i in $(seq $(nproc)); do while :; do :; done & done; trap "kill 0" TERM; wait' &
+  busy=$!
+  status=0
+  "$script" sh -c 'for i in 1 2 3 4 5 6 7 8 9 10 11 12; do grep -q "nice 0" /proc/self/autogroup && exit; sleep 1; done; exit 1' ||
+    status=$?
+  kill "$busy"
+  test "$status" = 0 || fail 'beside a busy session the session still counts least'
+fi
+
 # What the command began gets the signal too.
 "$script" sh -c 'sleep 60 & echo $! >"$0"; wait' "$folder/child" &
 for i in 1 2 3 4 5 6 7 8 9 10; do test -s "$folder/child" || sleep 0.2; done
