@@ -39,7 +39,7 @@ struct WaveParams {
                 field("cutoff_Hz", &WaveParams::cutoff_Hz, units::hertz, positive,
                       "Cutoff of the first-order low-pass of the arriving wave; below half the sample rate."),
                 field("correction_time_s", &WaveParams::correction_time_s, units::second, between(0.002, 10.0),
-                      "Time constant with which a receiver makes up for the position that lost waves carried."),
+                      "Time constant with which a receiver corrects the position error that lost waves cause."),
                 field("velocity", &WaveParams::velocity, "Filter of the master's velocity.")};
   }
 };

@@ -111,7 +111,7 @@ class InducedMotionModel {
     double friction_band_m_per_s = 0.005;
     static constexpr auto fields() {
       return List{
-          field("master", &Params::master, "Master and hand."),
+          field("master", &Params::master, "Mass of master and hand."),
           field("fidelity", &Params::fidelity, "How much of them the model distinguishes."),
           field("step", &Params::step, "How the model is advanced."),
           field("friction", &Params::friction, "On which velocity Coulomb friction acts, in the model that has it."),
