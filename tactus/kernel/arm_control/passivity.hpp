@@ -38,16 +38,18 @@ struct PassivityParams {
   double recovery_time_s = 0.05;
   static constexpr auto fields() {
     using P = PassivityParams;
-    return List{field("port", &P::port,
-                      "Port at which energy must not leave the link before it has entered: at each joint separately, "
-                      "or at all joints together, which is at the tool."),
-                field("joint_limits", &P::joint_limits, "Only with the port joints: the limits of each joint."),
-                field("tool_limit_N_s_per_m", &P::tool_limit_N_s_per_m, tactus::units::newton_second_per_metre,
-                      between(0.0, 1000.0),
-                      "Only with the port tool: largest damping at the leader's tool; above it a torque that drives "
-                      "the hand is only cancelled."),
-                field("recovery_time_s", &P::recovery_time_s, tactus::units::second, between(0.002, 10.0),
-                      "Time constant with which the follower closes the distance that its controller opened.")};
+    return List{
+        field("port", &P::port,
+              "Port at which energy must not leave the link before it has entered: at each joint separately, "
+              "or at all joints together, which is at the tool."),
+        field("joint_limits", &P::joint_limits, "Only with the port joints: the limits of each joint."),
+        field("tool_limit_N_s_per_m", &P::tool_limit_N_s_per_m, tactus::units::newton_second_per_metre,
+              between(0.0, 1000.0),
+              "Only with the port tool: largest damping at the leader's tool; above it a torque that drives "
+              "the hand is only cancelled."),
+        field(
+            "recovery_time_s", &P::recovery_time_s, tactus::units::second, between(0.002, 10.0),
+            "Time constant with which the follower corrects the position error that its passivity controller causes.")};
   }
 };
 

@@ -31,10 +31,10 @@ struct ControlParams : PositionForceMaster::Params {
   static constexpr auto fields() {
     return joined(
         List{field("architecture", &ControlParams::architecture,
-                   "How the sites work together; the architecture's page lists which of the keys below it uses.")},
+                   "Architecture of the two sites. The page of the architecture lists the keys below that it uses.")},
         PositionForceMaster::Params::fields(),
         List{field("slave", &ControlParams::slave, "The slave's position controller."),
-             field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
+             field("slave_force", &ControlParams::slave_force, "Source of the slave's tip force."),
              field("gate", &ControlParams::gate, "The safety gate of the master's motor."),
              field("handle_gate", &ControlParams::handle_gate,
                    "The safety gate of the actuator on the master's handle."),

@@ -56,7 +56,7 @@ struct SupervisionParams {
         field("hand_sensor", &SupervisionParams::hand_sensor,
               "Check of the master's motor against the force sensor at the hand, for a master with such a sensor; "
               "without one, leave the limit so large that it never applies."),
-        field("overload", &SupervisionParams::overload, "How many control cycles a site may miss before it holds."),
+        field("overload", &SupervisionParams::overload, "Limit of missed control cycles above which a site holds."),
         field("probe", &SupervisionParams::probe, "The force that tests the sign of a site's motor on arming."),
         field("hold", &SupervisionParams::hold, "The force when the site holds."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),

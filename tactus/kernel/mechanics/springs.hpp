@@ -84,7 +84,7 @@ class QuinticSpring {
                   field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
                         "Force per rate of deflection (paper A, Table I: 23)."),
                   field("guard_m", &Params::guard_m, units::metre, positive,
-                        "Deflection beyond which the quintic part grows no further, for numerical safety.")};
+                        "Deflection above which the quintic force stays constant, for numerical safety.")};
     }
   };
   using Input = Stretch;

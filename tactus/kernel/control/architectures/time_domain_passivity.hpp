@@ -64,7 +64,7 @@ struct PassivityParams {
               between(0.0, 1000.0),
               "Largest damping at the master's motor; above it a force that drives the hand is only cancelled."),
         field("recovery_time_s", &PassivityParams::recovery_time_s, units::second, between(0.002, 10.0),
-              "Time constant with which the slave closes the distance that its passivity controller opened."),
+              "Time constant with which the slave corrects the position error that its passivity controller causes."),
         field("velocity", &PassivityParams::velocity, "Filter of the velocity on which the master's damping acts.")};
   }
 };

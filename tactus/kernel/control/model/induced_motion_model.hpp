@@ -113,7 +113,7 @@ class InducedMotionModel {
       return List{
           field("master", &Params::master, "Mass of master and hand."),
           field("fidelity", &Params::fidelity, "How much of them the model distinguishes."),
-          field("step", &Params::step, "How the model is advanced."),
+          field("step", &Params::step, "Integration method of the model."),
           field("friction", &Params::friction, "On which velocity Coulomb friction acts, in the model that has it."),
           field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second, positive,
                 "Intended velocity above which friction counts as saturated by it.")};

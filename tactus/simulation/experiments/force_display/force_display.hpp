@@ -86,8 +86,8 @@ struct ForceDisplayControl {
   control::MasterModel model;
   static constexpr auto fields() {
     return List{field("cancellation_model", &ForceDisplayControl::cancellation_model,
-                      "How much of master and hand the model distinguishes."),
-                field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
+                      "Parts of master and hand that the model distinguishes."),
+                field("cancellation_step", &ForceDisplayControl::cancellation_step, "Integration method of the model."),
                 field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }
 };
