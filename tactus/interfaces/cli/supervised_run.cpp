@@ -246,7 +246,8 @@ void add_site_options(CLI::App& verb, SupervisedOptions& options) {
   add("--key", options.key, "Key that both sites share, created by `tactus key`", "FILE");
   verb.add_flag("--unencrypted", options.unencrypted, "Send plain text, on the loopback of this host only")
       ->group(supervised_group);
-  verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as a packet of the slave is received")
+  verb.add_flag("--arm", options.arm,
+                "At the master: arm once, when packets of the slave have arrived for the watchdog's timeout")
       ->group(supervised_group);
   add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
 }
