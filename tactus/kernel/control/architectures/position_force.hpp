@@ -71,9 +71,9 @@ class PositionForceMaster {
     static constexpr auto fields() {
       return List{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
-                "Slave motion over master motion, lambda."),
+                "Slave motion divided by master motion, lambda."),
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0),
-                "Displayed force over tip force, mu."),
+                "Displayed force divided by tip force, mu."),
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
                 "Limit of the displayed force; it applies to the motor and to the actuator on the handle separately."),
           field("hand_compensation_Hz", &Params::hand_compensation_Hz, units::hertz, non_negative,

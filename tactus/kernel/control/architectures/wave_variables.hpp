@@ -94,7 +94,7 @@ class WaveMaster {
     WaveParams wave;
     static constexpr auto fields() {
       return List{field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
-                        "Slave motion over master motion, lambda."),
+                        "Slave motion divided by master motion, lambda."),
                   field("force_gain", &Params::force_gain, units::none, positive_up_to(1000.0),
                         "Displayed force over the slave's, mu."),
                   field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),

@@ -40,7 +40,7 @@ struct FrictionFunction {
   double quadratic = 0.00045;
   static constexpr auto fields() {
     return List{
-        field("law", &FrictionFunction::law, "none, sigmoid, smooth-coulomb or dead-band-coulomb."),
+        field("law", &FrictionFunction::law, "Friction law: none, sigmoid, smooth-coulomb or dead-band-coulomb."),
         field("force_N", &FrictionFunction::force_N, units::newton, non_negative,
               "Coulomb friction, or the factor of the sigmoid (the paper's h_e)."),
         field("offset_N", &FrictionFunction::offset_N, units::newton, any_finite,

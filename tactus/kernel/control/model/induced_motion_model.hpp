@@ -56,16 +56,15 @@ struct MasterModel {
   mechanics::QuinticSpring::Params hand;
   double linear_hand_stiffening = 10.0;
   static constexpr auto fields() {
-    return List{
-        field("motor", &MasterModel::motor, "Motor rotor."),
-        field("cable", &MasterModel::cable, "Cable between motor and drum."),
-        field("drum", &MasterModel::drum, "Drum."),
-        field("linkage", &MasterModel::linkage, "Linkage between drum and handle, with hysteresis."),
-        field("handle", &MasterModel::handle, "Handle."),
-        field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections."),
-        field("linear_hand_stiffening", &MasterModel::linear_hand_stiffening, units::none, between(1.0, 1000.0),
-              "Factor on the stiffness of the hand in the linear models, which have no quintic spring: by about so "
-              "much they underestimate slow deflection.")};
+    return List{field("motor", &MasterModel::motor, "Motor rotor."),
+                field("cable", &MasterModel::cable, "Cable between motor and drum."),
+                field("drum", &MasterModel::drum, "Drum."),
+                field("linkage", &MasterModel::linkage, "Linkage between drum and handle, with hysteresis."),
+                field("handle", &MasterModel::handle, "Handle."),
+                field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections."),
+                field("linear_hand_stiffening", &MasterModel::linear_hand_stiffening, units::none, between(1.0, 1000.0),
+                      "Factor on the stiffness of the hand in the linear models, which have no quintic spring. They "
+                      "underestimate slow deflections by about this factor.")};
   }
 };
 

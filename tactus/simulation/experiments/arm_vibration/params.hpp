@@ -36,7 +36,7 @@ struct ArmVibrationTask {
     return List{
         field("kind", &T::kind, "Kind of the experiment."),
         field("joint", &T::joint, between(1, 8), "The joint that is judged and that has the causes below."),
-        field("held_by", &T::held_by, "The operator at the leader's tool."),
+        field("held_by", &T::held_by, "Whether the operator holds the leader's tool."),
         field("reach_m", &T::reach_m, units::metre, between(0.0, 0.5),
               "Distance by which the operator moves the tool within two seconds, in the direction in which the joint "
               "moves it, and then holds it."),
@@ -66,7 +66,8 @@ struct VibrationCauses {
         field("flank_stiffness_N_m_per_rad", &C::flank_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
               between(100.0, 1e5), "Stiffness of the transmission at the ends of the backlash."),
         field("flank_damping_N_m_s_per_rad", &C::flank_damping_N_m_s_per_rad,
-              arm::units::newton_metre_second_per_radian, between(0.0, 20.0), "Damping in parallel with it."),
+              arm::units::newton_metre_second_per_radian, between(0.0, 20.0),
+              "Damping in parallel with this stiffness."),
         field("velocity_scale", &C::velocity_scale, units::none, between(0.1, 10.0),
               "The host's range of velocity (VMAX) divided by the drive's own, at the leader's joint."),
         field("friction_share", &C::friction_share, units::none, between(0.0, 2.0),

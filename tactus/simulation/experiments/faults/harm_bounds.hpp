@@ -21,12 +21,12 @@ struct HarmBounds {
         field("speed_m_per_s", &HarmBounds::speed_m_per_s, units::metre_per_second, positive,
               "Speed that handle and tool may reach."),
         field("strayed_m", &HarmBounds::strayed_m, units::metre, positive,
-              "Distance that they may move beyond the ends of the operator's path."),
+              "Distance that handle and tool may move beyond the ends of the operator's path."),
         field("hand_force_N", &HarmBounds::hand_force_N, units::newton, positive, "Force between hand and handle."),
         field("tool_force_N", &HarmBounds::tool_force_N, units::newton, positive,
               "Force between the tool and what it touches."),
         field("pressing_N", &HarmBounds::pressing_N, units::newton, positive,
-              "Either of these two forces, if it lasts."),
+              "Lasting force between hand and handle, or between the tool and what it touches."),
         field("release_s", &HarmBounds::release_s, units::second, positive,
               "Time from the instant at which both sites are in hold or fault until the motors apply no force.")};
   }

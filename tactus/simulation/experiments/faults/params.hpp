@@ -26,7 +26,7 @@ struct FaultsTask {
   std::int64_t real_time_seeds = 30;
   static constexpr auto fields() {
     return List{field("kind", &FaultsTask::kind, "Kind of the experiment."),
-                field("seeds", &FaultsTask::seeds, between(1, 1000000), "Runs of each fault."),
+                field("seeds", &FaultsTask::seeds, between(1, 1000000), "Number of runs of each fault."),
                 field("seed", &FaultsTask::seed, non_negative, "Seed from which every run is drawn."),
                 field("only", &FaultsTask::only, "Identifier of the only fault to run; empty: all."),
                 field("longest_cut_s", &FaultsTask::longest_cut_s, units::second, between(0.02, 600.0),

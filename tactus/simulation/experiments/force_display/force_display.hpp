@@ -66,16 +66,17 @@ struct ForceDisplayTask {
   double force_limit_N = 1.0;
   ModelMismatch mismatch{.mass = 1.2, .linkage_stiffness = 0.8, .operator_damping = 1.2};
   static constexpr auto fields() {
-    return List{field("kind", &ForceDisplayTask::kind, "Kind of the experiment."),
-                field("seed", &ForceDisplayTask::seed, non_negative, "Seed that draws the tremor of each repeat."),
-                field("repeats", &ForceDisplayTask::repeats, between(1, 10000), "Number of repeats of each case."),
-                field("speed_m_per_s", &ForceDisplayTask::speed_m_per_s, units::metre_per_second, between(-1.0, 1.0),
-                      "Constant speed of the hand."),
-                field("observation_s", &ForceDisplayTask::observation_s, units::second, between(0.02, 10.0),
-                      "Time for which the motion is analysed, from the start of the force."),
-                field("force_limit_N", &ForceDisplayTask::force_limit_N, units::newton, positive_up_to(100.0),
-                      "Largest force; the profile is displayed at a quarter, at half and at all of it."),
-                field("mismatch", &ForceDisplayTask::mismatch, "Errors of the mismatched model.")};
+    return List{
+        field("kind", &ForceDisplayTask::kind, "Kind of the experiment."),
+        field("seed", &ForceDisplayTask::seed, non_negative, "Seed from which the tremor of each repeat is drawn."),
+        field("repeats", &ForceDisplayTask::repeats, between(1, 10000), "Number of repeats of each case."),
+        field("speed_m_per_s", &ForceDisplayTask::speed_m_per_s, units::metre_per_second, between(-1.0, 1.0),
+              "Constant speed of the hand."),
+        field("observation_s", &ForceDisplayTask::observation_s, units::second, between(0.02, 10.0),
+              "Time for which the motion is analysed, from the start of the force."),
+        field("force_limit_N", &ForceDisplayTask::force_limit_N, units::newton, positive_up_to(100.0),
+              "Largest force; the profile is displayed at a quarter, at half and at all of it."),
+        field("mismatch", &ForceDisplayTask::mismatch, "Errors of the mismatched model.")};
   }
 };
 
