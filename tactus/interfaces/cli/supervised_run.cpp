@@ -224,10 +224,9 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
 constexpr const char* supervised_group = "With supervision, in real time";
 
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
-  verb.add_option(
-          "--device", options.devices,
-          "Rig file, or one of its pairs: leader and follower are driven, with --site one of them. Or the name of "
-          "a device that the program provides, for both sites or for one")
+  verb.add_option("--device", options.devices,
+                  "Rig file, or one of its pairs: both leader and follower are driven, or with --site one of them. Or "
+                  "the name of a device that the program provides, for both sites or for one")
       ->type_name("[SITE=]NAME|RIG.toml[:PAIR]")
       ->group(supervised_group)
       ->allow_extra_args(false);
