@@ -178,7 +178,7 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
   add_experiment_options(*verb, options->experiment);
   verb->add_option("--vary", options->vary,
                    "Axis of the map: key=from:to:count, key=from:to:count[log] or key=a,b,c. For two arms key=a,b,c; "
-                   "if there is none, poses, directions and methods")
+                   "by default poses, directions and methods")
       ->type_name("AXIS")
       ->allow_extra_args(false);
   verb->add_option("--hand", options->hands, "Two arms: a further grip in addition to the file's, a file as for --with")
