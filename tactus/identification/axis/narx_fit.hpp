@@ -25,10 +25,11 @@ struct NarxStructure {
     using S = NarxStructure;
     return List{
         field("degree", &S::degree, between(1, 3), "Highest degree of a term."),
-        field("differences", &S::differences, between(2, 6), "Differences of neighbouring lagged positions."),
-        field("output_lags", &S::output_lags, between(0, 3), "Lagged outputs of the model itself; 0 is no feedback."),
-        field("most_terms", &S::most_terms, between(1, 12), "No more terms than this are chosen."),
-        field("lag_s", &S::lag_s, units::second, positive, "From one lag to the next; 1 to 64 samples."),
+        field("differences", &S::differences, between(2, 6), "Number of differences of neighbouring lagged positions."),
+        field("output_lags", &S::output_lags, between(0, 3),
+              "Number of lagged outputs of the model itself; 0: no feedback."),
+        field("most_terms", &S::most_terms, between(1, 12), "Largest number of terms that are chosen."),
+        field("lag_s", &S::lag_s, units::second, positive, "Time between two lags; 1 to 64 samples."),
         field("cutoff_Hz", &S::cutoff_Hz, units::hertz, positive, "Low-pass on position and command."),
         field("actuator_gain", &S::actuator_gain, units::none, any_finite,
               "K_a: force in N for one unit of the command.")};

@@ -22,12 +22,13 @@ struct CancellationFile {
     control::CancellationStep cancellation_step = control::CancellationStep::exact;
     control::ModelFriction cancellation_friction = control::ModelFriction::total_velocity;
     static constexpr auto fields() {
-      return List{field("model", &Control::model, "The controller's model of master and hand."),
-                  field("cancellation_model", &Control::cancellation_model,
-                        "How much detail of master and hand the model of cancellation has."),
-                  field("cancellation_step", &Control::cancellation_step, "How the model of cancellation is advanced."),
-                  field("cancellation_friction", &Control::cancellation_friction,
-                        "On which velocity the Coulomb friction of the sixth-order model acts.")};
+      return List{
+          field("model", &Control::model, "The controller's model of master and hand."),
+          field("cancellation_model", &Control::cancellation_model,
+                "How much detail of master and hand the model of cancellation has."),
+          field("cancellation_step", &Control::cancellation_step, "Integration method of the model of cancellation."),
+          field("cancellation_friction", &Control::cancellation_friction,
+                "Velocity on which the Coulomb friction of the sixth-order model acts.")};
     }
   };
   Control control;

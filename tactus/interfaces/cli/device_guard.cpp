@@ -160,10 +160,9 @@ Result<bool> guard(const GuardOptions& options) {
 
 void add_device_guard(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<GuardOptions>();
-  CLI::App* verb =
-      device.add_subcommand("guard",
-                            "Switch off motors without a watchdog once standard input ends, or the program "
-                            "that drives them stops; 'run' starts it by itself");
+  CLI::App* verb = device.add_subcommand("guard",
+                                         "Switch off motors that have no watchdog when standard input ends or when the "
+                                         "program that drives them stops; 'run' starts this command by itself");
   verb->add_option("RIG", options->rig, "Rig file")->required();
   verb->add_option("SIDE", options->side, "Side of the rig, such as arm.leader")->required();
   verb->callback([options, &app, &status] { end_command(app, guard(*options), status); });

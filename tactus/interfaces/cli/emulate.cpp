@@ -143,9 +143,8 @@ void add_emulate(CLI::App& app, int& status) {
     chosen->add_flag("--live", *live, live_help);
     run(*chosen, [make, live] { return emulate(make, *live); });
   }
-  CLI::App* chosen = verb->add_subcommand("inverse3",
-                                          "Haply's Inverse Service with an Inverse3, at a port whose address "
-                                          "it prints");
+  CLI::App* chosen = verb->add_subcommand(
+      "inverse3", "Emulate Haply's Inverse Service with an Inverse3, at a port whose address it prints");
   const auto live = std::make_shared<bool>(false);
   const auto start = add_inverse3_options(*chosen);
   chosen->add_flag("--live", *live,

@@ -51,8 +51,9 @@ inline const std::string& of_motor(const std::vector<std::string>& models, std::
   return models[std::min(static_cast<std::size_t>(id), models.size()) - 1];
 }
 inline constexpr const char* live_help =
-    "Read faults from standard input while it runs, one a line, with times from then on, and print a line whenever the "
-    "power of a motor changes, as 'power 2 off 1234.567': its number and the time of CLOCK_MONOTONIC in s";
+    "Read faults from standard input while the command runs, one per line, with times that count from then on; and "
+    "print a line when the power of a motor changes, such as 'power 2 off 1234.567', with its number and the time of "
+    "CLOCK_MONOTONIC in s";
 inline constexpr const char* models_help = "Model of each, separated by commas; the last one applies to the rest";
 
 /// Models of Dynamixel servos that are emulated, with the number that each reports.

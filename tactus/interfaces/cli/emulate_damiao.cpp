@@ -144,10 +144,11 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
           "register-answer, twin, wrap, power-cycle, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Seed of delays and garbage");
-  CLI::Option* arm = verb.add_option("--arm", options->arm,
-                                     "An arm with its weight, which the first motors move together; the others each "
-                                     "turn a joint of their own. It hangs, and without power it falls")
-                         ->type_name("URDF");
+  CLI::Option* arm =
+      verb.add_option("--arm", options->arm,
+                      "Emulate an arm with its weight: the first motors move its joints, and each further motor turns "
+                      "a joint of its own. The arm hangs, and without power it falls")
+          ->type_name("URDF");
   verb.add_option("--tip", options->tip, "Link at which that arm ends, if the URDF continues or branches")
       ->type_name("LINK")
       ->needs(arm);

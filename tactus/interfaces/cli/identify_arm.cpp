@@ -241,7 +241,7 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
   add_arm_options(*verb, options->arm, command,
                   "Folder for model.toml, arm.urdf, armatures.toml, report.html and results.json");
   verb->add_flag("--free-scales", options->free_scales,
-                 "Find how much of each effort is 1 N m, although the file states torques");
+                 "Identify the scale between effort and N m of each joint, even if the file states torques");
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")
       ->type_name("HZ")
       ->check(real_between(0.1, 500.0));

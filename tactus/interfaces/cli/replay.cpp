@@ -69,7 +69,7 @@ void add_replay(CLI::App& app, const std::string& command, int& status) {
   CLI::App* verb =
       app.add_subcommand("replay", "Repeat the control cycles of a logged run with the logged readings, and compare");
   verb->add_option("LOG", options->log,
-                   "Log (.mcap) of `run --realtime --out` or `run --site --out`, of a rig too, or its folder")
+                   "Log (.mcap), or its folder, of `run --realtime --out` or `run --site --out`, with or without a rig")
       ->required();
   verb->add_flag("--check", options->check, "Exit with status 1 if anything differs from the log");
   add_json_option(*verb, options->json, command);

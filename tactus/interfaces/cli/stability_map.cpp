@@ -177,9 +177,8 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
       "map", "Map where taps settle, or the gain limit of two arms, over a grid of parameters");
   add_experiment_options(*verb, options->experiment);
   verb->add_option("--vary", options->vary,
-                   "Axis of the map: key=from:to:count, key=from:to:count[log] or key=a,b,c; for two arms key=a,b,c, "
-                   "and without "
-                   "any poses, directions and methods")
+                   "Axis of the map: key=from:to:count, key=from:to:count[log] or key=a,b,c. For two arms key=a,b,c; "
+                   "by default poses, directions and methods")
       ->type_name("AXIS")
       ->allow_extra_args(false);
   verb->add_option("--hand", options->hands, "Two arms: a further grip in addition to the file's, a file as for --with")

@@ -16,14 +16,15 @@ struct HandImpedance {
   double lever_m = 0.0;
   static constexpr auto fields() {
     using H = HandImpedance;
-    return List{
-        field("mass_kg", &H::mass_kg, tactus::units::kilogram, between(0.0, 5.0), "Mass that the tool carries along."),
-        field("stiffness_N_per_m", &H::stiffness_N_per_m, tactus::units::newton_per_metre, between(0.0, 1e5),
-              "Stiffness of the hand in each direction."),
-        field("damping_N_s_per_m", &H::damping_N_s_per_m, tactus::units::newton_second_per_metre, between(0.0, 1e4),
-              "Damping of the hand in each direction."),
-        field("lever_m", &H::lever_m, tactus::units::metre, between(0.0, 0.5),
-              "Half of the breadth of the grip, which holds the tool's attitude; 0 lets it turn freely.")};
+    return List{field("mass_kg", &H::mass_kg, tactus::units::kilogram, between(0.0, 5.0),
+                      "Mass of the hand that moves with the tool."),
+                field("stiffness_N_per_m", &H::stiffness_N_per_m, tactus::units::newton_per_metre, between(0.0, 1e5),
+                      "Stiffness of the hand in each direction."),
+                field("damping_N_s_per_m", &H::damping_N_s_per_m, tactus::units::newton_second_per_metre,
+                      between(0.0, 1e4), "Damping of the hand in each direction."),
+                field("lever_m", &H::lever_m, tactus::units::metre, between(0.0, 0.5),
+                      "Half of the breadth of the grip, which holds the orientation of the tool; 0: the tool turns "
+                      "freely in the hand.")};
   }
 };
 

@@ -42,12 +42,12 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
     return joined(
         ExternalTorqueObserver::Params::fields(),
         List{field("joints", &TorqueObserverParams::joints,
-                   "What it takes the joints for: elastic ones filter in third order."),
+                   "The observer's model of the joints; with elastic joints its filter is of third order."),
              field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
-                   "Share of each joint's Coulomb friction that torque must exceed to be reported."),
-             field(
-                 "bias_distance_m", &TorqueObserverParams::bias_distance_m, tactus::units::metre, between(0.0, 10.0),
-                 "Free travel of the tool in which torque from outside that stays counts as bias, to 63 %; 0: none.")});
+                   "Share of each joint's Coulomb friction that an external torque must exceed to be reported."),
+             field("bias_distance_m", &TorqueObserverParams::bias_distance_m, tactus::units::metre, between(0.0, 10.0),
+                   "Free travel of the tool after which 63 % of a lasting external torque counts as bias; 0: no bias "
+                   "is estimated.")});
   }
 };
 
@@ -74,24 +74,24 @@ class ArmFollower {
       using P = Params;
       return List{
           field("coupling", &P::coupling,
-                "What the leader commands: joints, each one that of the same number; tool, with a leader of three "
-                "joints that slide, where the follower's tool is."),
+                "Quantity that the leader commands. joints: each joint commands that of the same number. tool: a "
+                "leader of three joints that slide commands the position of the follower's tool."),
           field("tool_scale", &P::tool_scale, tactus::units::none, between(0.01, 100.0),
-                "With the coupling tool alone: metres of the follower's tool for one of the leader's handle, and "
-                "newtons at the handle for one at the tool at a force_gain of 1."),
-          field("gains", &P::gains, "Of the drives."),
+                "Only with the coupling tool: metres of the follower's tool for one metre of the leader's handle, and "
+                "newtons at the handle for one newton at the tool at a force_gain of 1."),
+          field("gains", &P::gains, "Gains of the drives."),
           field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
-                "Share of the stiffness in gains that the drives are given; their damping stays."),
+                "Factor on the stiffness of the drives in gains; their damping stays."),
           field("tool_stiffness_limit_N_per_m", &P::tool_stiffness_limit_N_per_m, tactus::units::newton_per_metre,
                 between(0.0, 1e5),
-                "The most that the drives' stiffness may come to at the tool, in any direction; 0 is no limit."),
+                "Largest stiffness at the tool, in any direction, that the drives may cause; 0: no limit."),
           field("tool_damping_limit_N_s_per_m", &P::tool_damping_limit_N_s_per_m,
                 tactus::units::newton_second_per_metre, between(0.0, 1e4),
-                "The most that the drives' damping may come to there; 0 is no limit."),
-          field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
+                "Largest damping at the tool, in any direction, that the drives may cause; 0: no limit."),
+          field("feed_forward", &P::feed_forward, "Feed-forward torques of the follower, for gravity and friction."),
           field("wanted_motion", &P::wanted_motion,
-                "What moves it as the leader wants in free motion, in addition to its drives."),
-          field("torque", &P::torque, "Where the external torque that comes back is from."),
+                "Feed-forward of the leader's motion in free motion, in addition to the drives."),
+          field("torque", &P::torque, "Source of the external torque that is displayed."),
           field("observer", &P::observer, "The observer of external torque.")};
     }
   };

@@ -54,7 +54,7 @@ struct DriveDamping {
   static constexpr auto fields() {
     return List{field("damping_N_m_s_per_rad", &DriveDamping::damping_N_m_s_per_rad,
                       arm::units::newton_metre_second_per_radian, between(0.0, 50.0),
-                      "Derivative gain of the leader's drive, towards rest.")};
+                      "Derivative gain of the leader's drive, toward zero velocity.")};
   }
 };
 
@@ -94,35 +94,34 @@ class ArmLeader {
     static constexpr auto fields() {
       using P = Params;
       return List{
-          field("method", &P::method, "How the arms are coupled."),
+          field("method", &P::method, "Method that couples the arms."),
           field("force_gain", &P::force_gain, tactus::units::none, between(0.0, 100.0),
-                "Displayed torque over the follower's external torque; with position-position the leader's drive gains "
-                "over the follower's."),
+                "Displayed torque divided by the follower's external torque; with position-position, the leader's "
+                "drive gains divided by the follower's."),
           field("damping_N_s_per_m", &P::damping_N_s_per_m, tactus::units::newton_second_per_metre,
-                between(0.0, 1000.0), "A damper at the leader's tool, by way of the bus."),
+                between(0.0, 1000.0), "Damping at the leader's tool, computed by the site and commanded over the bus."),
           field("drive_damping", &P::drive_damping,
-                "What the leader's drives resist by themselves; not with position-position."),
+                "Damping by the leader's drives themselves; not with position-position."),
           field("drive_damping_limit_N_s_per_m", &P::drive_damping_limit_N_s_per_m,
                 tactus::units::newton_second_per_metre, between(0.0, 1e4),
-                "The most that drive_damping may come to at the tool, in any direction; 0 is no limit."),
-          field(
-              "damping_washout_Hz", &P::damping_washout_Hz, tactus::units::hertz, between(0.0, 50.0),
-              "In free motion the leader's dampers resist what is faster than this; in contact, along its normal, all "
-              "motion. 0: all motion everywhere."),
+                "Largest damping at the tool, in any direction, that drive_damping may cause; 0: no limit."),
+          field("damping_washout_Hz", &P::damping_washout_Hz, tactus::units::hertz, between(0.0, 50.0),
+                "In free motion the leader's dampers resist only motion above this frequency; in contact, along its "
+                "normal, all motion. 0: always all motion."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the displayed torque; 0: no filter."),
-          field("force_low_pass_each", &P::force_low_pass_each, "Corners of joints that have one of their own."),
+          field("force_low_pass_each", &P::force_low_pass_each, "Separate corner frequencies of single joints."),
           field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the command to the follower; 0: no filter."),
-          field("command_low_pass_each", &P::command_low_pass_each, "Corners of joints that have one of their own."),
-          field("feed_forward", &P::feed_forward, "What carries the leader and helps it against friction."),
+          field("command_low_pass_each", &P::command_low_pass_each, "Separate corner frequencies of single joints."),
+          field("feed_forward", &P::feed_forward, "Feed-forward torques of the leader, for gravity and friction."),
           field("model", &P::model, "The model of induced motion."),
-          field("factr", &P::factr, "With factr alone: its law, in addition to the displayed torque."),
-          field("avoidance", &P::avoidance, "With feedback-avoidance alone: its gain of each joint."),
-          field("four_channel", &P::four_channel, "With four-channel alone: the law of both arms."),
-          field(
-              "passivity", &P::passivity,
-              "Dampers at both sites that take what energy there is too much of; with a method that reflects torque.")};
+          field("factr", &P::factr, "Only with factr: the torques of its law, in addition to the displayed torque."),
+          field("avoidance", &P::avoidance, "Only with feedback-avoidance: the gain of each joint."),
+          field("four_channel", &P::four_channel, "Only with four-channel: the law of both arms."),
+          field("passivity", &P::passivity,
+                "Dampers at both sites that absorb excess energy (time-domain passivity); only with a method that "
+                "reflects torque.")};
     }
   };
 

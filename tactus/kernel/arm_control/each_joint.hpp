@@ -42,7 +42,7 @@ struct JointCutoff {
   double cutoff_Hz = 0.0;
   static constexpr auto fields() {
     return List{field("cutoff_Hz", &JointCutoff::cutoff_Hz, units::hertz, between(0.0, 1000.0),
-                      "Corner of this joint; 0 is that of all.")};
+                      "Corner frequency of this joint; 0: the common one.")};
   }
 };
 

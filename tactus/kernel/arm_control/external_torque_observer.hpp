@@ -30,8 +30,8 @@ class ExternalTorqueObserver {
     EachJoint<JointCutoff> cutoff_each = {};
     static constexpr auto fields() {
       return List{field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive_up_to(1000.0),
-                        "-3 dB of the estimate of external torque, for an exact velocity."),
-                  field("cutoff_each", &Params::cutoff_each, "Corners of joints that have one of their own.")};
+                        "-3 dB frequency of the estimate of external torque, if the velocity is exact."),
+                  field("cutoff_each", &Params::cutoff_each, "Separate corner frequencies of single joints.")};
     }
   };
 

@@ -27,9 +27,9 @@ class FeedForward {
     static constexpr auto fields() {
       return List{
           field("friction_share", &Params::friction_share, units::none, between(0.0, 1.0),
-                "Share of the joints' friction that the motors overcome."),
+                "Share of the joints' friction that the motors compensate."),
           field("friction_velocity_rad_per_s", &Params::friction_velocity_rad_per_s, arm::units::radian_per_second,
-                positive_up_to(10.0), "Velocity within which the torque against Coulomb friction turns round.")};
+                positive_up_to(10.0), "Velocity within which the torque against Coulomb friction changes its sign.")};
     }
   };
 

@@ -19,15 +19,15 @@ struct FourChannelJoint {
     using J = FourChannelJoint;
     namespace u = arm::units;
     return List{field("stiffness_N_m_per_rad", &J::stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
-                      between(0.0, 500.0), "Kp of the drive, to the other arm's position."),
+                      between(0.0, 500.0), "Kp of the drive, toward the other arm's position."),
                 field("damping_N_m_s_per_rad", &J::damping_N_m_s_per_rad, u::newton_metre_second_per_radian,
-                      between(0.0, 50.0), "Kd of the drive, to its velocity."),
+                      between(0.0, 50.0), "Kd of the drive, toward the other arm's velocity."),
                 field("observer_rad_per_s", &J::observer_rad_per_s, u::radian_per_second, positive_up_to(1000.0),
-                      "Corner of both observers."),
+                      "Corner frequency of both observers."),
                 field("force_share", &J::force_share, tactus::units::none, between(0.0, 10.0),
                       "Kf: gain on the sum of both sides' torques."),
                 field("disturbance_limit_N_m", &J::disturbance_limit_N_m, u::newton_metre, between(0.0, 100.0),
-                      "The most that is commanded against a disturbance.")};
+                      "Largest torque that is commanded against a disturbance.")};
   }
 };
 
@@ -57,11 +57,11 @@ class FourChannel {
     double alpha = 1.0;
     double beta = 0.8;
     static constexpr auto fields() {
-      return List{
-          field("joints", &Params::joints, "Gains of each joint, of both arms."),
-          field("alpha", &Params::alpha, tactus::units::none, positive_up_to(100.0),
-                "Weight of the leader's inertia in the share of force."),
-          field("beta", &Params::beta, tactus::units::none, positive_up_to(100.0), "Weight of the follower's.")};
+      return List{field("joints", &Params::joints, "Gains of each joint, of both arms."),
+                  field("alpha", &Params::alpha, tactus::units::none, positive_up_to(100.0),
+                        "Weight of the leader's inertia in the share of force."),
+                  field("beta", &Params::beta, tactus::units::none, positive_up_to(100.0),
+                        "Weight of the follower's inertia in the share of force.")};
     }
   };
   enum class Side { leader, follower };

@@ -51,11 +51,12 @@ class InducedMotion {
     InertiaModel inertia = InertiaModel::full;
     JointModel joints = JointModel::rigid;
     static constexpr auto fields() {
-      return List{field("hand", &Params::hand, "The assumed hand on the tool."),
-                  field("washout_Hz", &Params::washout_Hz, tactus::units::hertz, between(0.0, 50.0),
-                        "Corner below which induced motion is left to the operator; 0 takes out slow motion too."),
-                  field("inertia", &Params::inertia, "The full mass matrix, or its diagonal alone."),
-                  field("joints", &Params::joints, "What the joints are taken for.")};
+      return List{
+          field("hand", &Params::hand, "The hand on the tool, as the model assumes it."),
+          field("washout_Hz", &Params::washout_Hz, tactus::units::hertz, between(0.0, 50.0),
+                "Corner frequency below which induced motion is not cancelled; 0: slow motion is cancelled too."),
+          field("inertia", &Params::inertia, "The full mass matrix, or its diagonal alone."),
+          field("joints", &Params::joints, "Model of the joints.")};
     }
   };
   /// What the leader's site does by itself on every velocity.

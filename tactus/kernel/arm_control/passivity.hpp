@@ -26,7 +26,7 @@ struct PassivityLimit {
   static constexpr auto fields() {
     return List{field("damping_N_m_s_per_rad", &PassivityLimit::damping_N_m_s_per_rad,
                       arm::units::newton_metre_second_per_radian, between(0.0, 50.0),
-                      "Largest damping of the joint; beyond it a torque that drives the hand is only cancelled.")};
+                      "Largest damping of the joint; above it a torque that drives the hand is only cancelled.")};
   }
 };
 
@@ -40,15 +40,16 @@ struct PassivityParams {
     using P = PassivityParams;
     return List{
         field("port", &P::port,
-              "Time-domain passivity: whose energy may not come out of the line before it went in; each joint's by "
-              "itself, or all joints' together, which is that of the tool."),
-        field("joint_limits", &P::joint_limits, "With the port joints alone."),
+              "Port at which energy must not leave the link before it has entered: at each joint separately, "
+              "or at all joints together, which is at the tool."),
+        field("joint_limits", &P::joint_limits, "Only with the port joints: the limits of each joint."),
         field("tool_limit_N_s_per_m", &P::tool_limit_N_s_per_m, tactus::units::newton_second_per_metre,
               between(0.0, 1000.0),
-              "With the port tool alone: largest damping at the leader's tool; beyond it a torque that drives the hand "
-              "is only cancelled."),
-        field("recovery_time_s", &P::recovery_time_s, tactus::units::second, between(0.002, 10.0),
-              "Time constant with which the follower closes the distance that its controller opened.")};
+              "Only with the port tool: largest damping at the leader's tool; above it a torque that drives "
+              "the hand is only cancelled."),
+        field(
+            "recovery_time_s", &P::recovery_time_s, tactus::units::second, between(0.002, 10.0),
+            "Time constant with which the follower corrects the position error that its passivity controller causes.")};
   }
 };
 

@@ -32,12 +32,12 @@ class Tare {
     double amplitude_rad = 0.02;
     double frequency_Hz = 1.0;
     static constexpr auto fields() {
-      return List{
-          field("cycles", &Params::cycles, between(0, 20),
-                "Cycles that are averaged, after one more in which the motion comes in; 0: no tare."),
-          field("amplitude_rad", &Params::amplitude_rad, arm::units::radian, positive_up_to(0.1),
-                "How far each joint moves to either side, in m where it slides."),
-          field("frequency_Hz", &Params::frequency_Hz, tactus::units::hertz, between(0.1, 5.0), "Of that motion.")};
+      return List{field("cycles", &Params::cycles, between(0, 20),
+                        "Cycles of motion that are averaged, after one in which the motion ramps in; 0: no tare."),
+                  field("amplitude_rad", &Params::amplitude_rad, arm::units::radian, positive_up_to(0.1),
+                        "Amplitude of the motion of each joint; in m if it slides."),
+                  field("frequency_Hz", &Params::frequency_Hz, tactus::units::hertz, between(0.1, 5.0),
+                        "Frequency of this motion.")};
     }
   };
   /// Of the drives while it lasts.

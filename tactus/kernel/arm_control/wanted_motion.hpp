@@ -34,7 +34,7 @@ class WantedMotion {
     double cutoff_Hz = 0.0;
     static constexpr auto fields() {
       return List{field("cutoff_Hz", &Params::cutoff_Hz, tactus::units::hertz, between(0.0, 50.0),
-                        "-3 dB of the wanted velocity that it follows, at half the sample rate at most; 0 adds none.")};
+                        "-3 dB frequency of the wanted velocity, at most half the sample rate; 0: no feed-forward.")};
     }
   };
   /// What it assumes of the follower.

@@ -31,18 +31,18 @@ struct ControlParams : PositionForceMaster::Params {
   static constexpr auto fields() {
     return joined(
         List{field("architecture", &ControlParams::architecture,
-                   "How the sites work together; the architecture's page lists which of the keys below it uses.")},
+                   "Architecture of the two sites. The page of the architecture lists the keys below that it uses.")},
         PositionForceMaster::Params::fields(),
         List{field("slave", &ControlParams::slave, "The slave's position controller."),
-             field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
-             field("gate", &ControlParams::gate, "Last limits before the master's motor."),
+             field("slave_force", &ControlParams::slave_force, "Source of the slave's tip force."),
+             field("gate", &ControlParams::gate, "The safety gate of the master's motor."),
              field("handle_gate", &ControlParams::handle_gate,
-                   "Last limits before the actuator on the master's handle."),
-             field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
+                   "The safety gate of the actuator on the master's handle."),
+             field("slave_gate", &ControlParams::slave_gate, "The safety gate of the slave's motor."),
              field("", &ControlParams::groups, "The groups of the architectures."),
              field("supervision", &ControlParams::supervision,
-                   "States, watchdogs and what a site accepts of the other; used by supervised sites: by "
-                   "`tactus faults` and `tactus run --site`.")});
+                   "States, watchdogs and checks of received packets, for supervised sites: `tactus faults` and "
+                   "`tactus run --site`.")});
   }
 
   /// The parameters that an architecture has of its own, by their type: its defaults where nobody has set them.

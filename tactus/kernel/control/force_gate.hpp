@@ -49,7 +49,7 @@ constexpr auto enumerators(ActiveLimit) {
 /// The longest time that a force may take to fall to zero once it must.
 inline constexpr double longest_stop_s = 0.25;
 inline constexpr const char* stop_time_doc =
-    "Time in which the largest force falls to zero when the site stops, where the rate limit is slower.";
+    "Time in which the largest force falls to zero when the site stops, if the rate limit alone would take longer.";
 
 /// The very last stage before an actuator: a finite force, within its limit, that changes no faster than its rate
 /// limit.
@@ -70,9 +70,9 @@ class ForceGate {
     static constexpr auto fields() {
       return List{
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                "Largest force either way that reaches the motor."),
+                "Largest force in either direction that reaches the motor."),
           field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second, positive_up_to(1e6),
-                "Fastest change of the force that reaches the motor."),
+                "Largest rate of change of the force that reaches the motor."),
           field("stop_time_s", &Params::stop_time_s, units::second, positive_up_to(longest_stop_s), stop_time_doc)};
     }
   };

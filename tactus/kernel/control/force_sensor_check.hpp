@@ -30,9 +30,9 @@ class ForceSensorCheck {
     double cutoff_Hz = 8.0;
     static constexpr auto fields() {
       return List{field("residual_limit_N", &Params::residual_limit_N, units::newton, positive_up_to(200.0),
-                        "Largest difference between the motor's force and the sensor's, slowly."),
+                        "Largest low-passed difference between the motor's force and the sensor's."),
                   field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, between(0.1, 200.0),
-                        "What slowly means: the corner of the low-pass on the difference.")};
+                        "Corner frequency of the low-pass on this difference.")};
     }
   };
   struct Input {

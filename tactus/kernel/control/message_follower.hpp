@@ -32,14 +32,16 @@ class MessageFollower {
     double catch_up_m_per_s = 0.05;
     double catch_up_N_per_s = 20.0;
     static constexpr auto fields() {
-      return List{field("extrapolation_s", &Params::extrapolation_s, units::second, between(0.0, 0.1),
-                        "Silence during which the other site is assumed to continue as before."),
-                  field("decay_s", &Params::decay_s, units::second, positive_up_to(1.0),
-                        "Time constant with which velocity, force and wave decay after that."),
-                  field("catch_up_m_per_s", &Params::catch_up_m_per_s, units::metre_per_second, positive_up_to(10.0),
-                        "How fast the followed position may close a gap, on top of the motion that is sent."),
-                  field("catch_up_N_per_s", &Params::catch_up_N_per_s, units::newton_per_second, positive_up_to(1e5),
-                        "The same for a sent force; for a velocity in m/s and a wave in square roots of watts too.")};
+      return List{
+          field("extrapolation_s", &Params::extrapolation_s, units::second, between(0.0, 0.1),
+                "Time without packets during which the other site is assumed to continue as before."),
+          field("decay_s", &Params::decay_s, units::second, positive_up_to(1.0),
+                "Time constant with which velocity, force and wave decay after that."),
+          field("catch_up_m_per_s", &Params::catch_up_m_per_s, units::metre_per_second, positive_up_to(10.0),
+                "Largest speed at which the followed position closes a gap, in addition to the received motion."),
+          field("catch_up_N_per_s", &Params::catch_up_N_per_s, units::newton_per_second, positive_up_to(1e5),
+                "The same for a received force; also for a velocity in m/s per s, and for a wave in square roots of "
+                "watts per s.")};
     }
   };
   struct Input {

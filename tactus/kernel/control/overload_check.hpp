@@ -28,7 +28,7 @@ class OverloadCheck {
       return List{field("missed_share", &Params::missed_share, units::none, positive_up_to(0.9),
                         "Share of missed control cycles above which the site holds."),
                   field("window_s", &Params::window_s, units::second, positive_up_to(10.0),
-                        "Time constant with which the share forgets.")};
+                        "Time constant of the average that gives this share.")};
     }
   };
   struct Input {

@@ -78,11 +78,11 @@ struct PacketJudgeParams {
   static constexpr auto fields() {
     using P = PacketJudgeParams;
     return List{field("longest_age_s", &P::longest_age_s, units::second, positive_up_to(10.0),
-                      "Age beyond which a message is not applied, however new."),
+                      "Age above which a message is not applied, even if it is the newest."),
                 field("position_limit_m", &P::position_limit_m, units::metre, positive_up_to(1000.0),
-                      "A received position beyond it is refused."),
+                      "A received position beyond this is refused."),
                 field("force_limit_N", &P::force_limit_N, units::newton, positive_up_to(1e5),
-                      "A received force beyond it is refused.")};
+                      "A received force beyond this is refused.")};
   }
 };
 

@@ -30,15 +30,14 @@ class ReversalCheck {
     double gained_m_per_s = 0.1;
     double lasting_s = 0.01;
     static constexpr auto fields() {
-      return List{
-          field("force_N", &Params::force_N, units::newton, positive_up_to(200.0),
-                "Least force, of the motor less the resistance that a sensor measures, against which no speed may be "
-                "gained; "
-                "above friction and the error of the sensor."),
-          field("gained_m_per_s", &Params::gained_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                "Speed gained against it that is a fault."),
-          field("lasting_s", &Params::lasting_s, units::second, positive_up_to(1.0),
-                "How long the force must have opposed the motion before; longer than amplifier and sensors take.")};
+      return List{field("force_N", &Params::force_N, units::newton, positive_up_to(200.0),
+                        "Net force (motor force minus the resistance that a sensor measures) against which the device "
+                        "must not gain speed; above friction and the error of the sensor."),
+                  field("gained_m_per_s", &Params::gained_m_per_s, units::metre_per_second, positive_up_to(100.0),
+                        "Gain of speed against this force that is a fault."),
+                  field("lasting_s", &Params::lasting_s, units::second, positive_up_to(1.0),
+                        "Time for which the force must have opposed the motion before; longer than the delays of "
+                        "amplifier and sensors.")};
     }
   };
   struct Input {

@@ -50,20 +50,21 @@ class SafetyGate {
     static constexpr auto fields() {
       return List{
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                "Largest force either way that reaches the motor."),
+                "Largest force in either direction that reaches the motor."),
           field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second, positive_up_to(1e6),
-                "Fastest change of the force that reaches the motor."),
+                "Largest rate of change of the force that reaches the motor."),
           field("velocity_limit_m_per_s", &Params::velocity_limit_m_per_s, units::metre_per_second,
-                positive_up_to(100.0), "Speed from which on no force may add to it; a fault at 1.25 times as much."),
+                positive_up_to(100.0),
+                "Speed above which no force may accelerate the motion; 1.25 times this speed is a fault."),
           field("position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
-                "Distance from zero from which on no force may add to it; a fault at 1.25 times as much."),
+                "Distance from zero beyond which no force may increase it; 1.25 times this distance is a fault."),
           field("stop_time_s", &Params::stop_time_s, units::second, positive_up_to(longest_stop_s), stop_time_doc),
-          field("encoder", &Params::encoder, "When a measured position cannot be true."),
+          field("encoder", &Params::encoder, "Check of the measured position."),
           field("motion", &Params::motion,
-                "When a position contradicts the velocity that its drive reports; where a drive reports one."),
-          field("energy", &Params::energy, "When the motor gives more energy than it may."),
-          field("reversal", &Params::reversal, "When a motor pushes the wrong way."),
-          field("thermal", &Params::thermal, "What the motor may give for long.")};
+                "Check of the position against the velocity that the drive reports; only for drives that report one."),
+          field("energy", &Params::energy, "Limits of the energy that the motor delivers."),
+          field("reversal", &Params::reversal, "Detection of a motor that pushes in the wrong direction."),
+          field("thermal", &Params::thermal, "Thermal limit of the motor.")};
     }
   };
   struct Input {

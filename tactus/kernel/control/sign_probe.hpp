@@ -59,16 +59,16 @@ class SignProbe {
     static constexpr auto fields() {
       return List{
           field("force_N", &Params::force_N, units::newton, between(0.0, 100.0),
-                "Peak of the force with which a motor is tried on arming; more than friction holds; 0 is no trial."),
+                "Peak of the force that tests a motor on arming; above the friction of the device. 0: no test."),
           field("most_force_N", &Params::most_force_N, units::newton, between(0.0, 100.0),
-                "If the device does not move, it is tried again with twice the force, up to this one and to the gate's "
-                "force limit; 0: it is tried once."),
+                "If the device does not move, the test is repeated with twice the force, up to this force and to the "
+                "gate's force limit; 0: one test only."),
           field("duration_s", &Params::duration_s, units::second, positive_up_to(5.0),
-                "Duration of one trial, both ways together."),
+                "Duration of one test, both directions together."),
           field("least_m", &Params::least_m, units::metre, positive_up_to(0.1),
-                "How far the device must move with the force, each way; several counts of its encoder."),
+                "Distance that the device must move with the force, in each direction; several counts of its encoder."),
           field("most_m", &Params::most_m, units::metre, positive_up_to(1.0),
-                "Beyond this the trial ends at once; above least_m.")};
+                "Distance beyond which the test ends at once; above least_m.")};
     }
   };
   struct Input {

@@ -26,7 +26,7 @@ struct HoldParams {
   double release_s = 1.0;
   static constexpr auto fields() {
     return List{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
-                      "Time in which the site's force fades to zero once it holds; a slave that must not sink "
+                      "Time in which the site's force falls to zero after it goes to hold. A slave that must not sink "
                       "or swing away needs a brake.")};
   }
 };
@@ -49,27 +49,26 @@ struct SupervisionParams {
   SupportCheck::Params support = {};
   static constexpr auto fields() {
     return List{
-        field("packets", &SupervisionParams::packets, "Which packets of the other site count."),
-        field("silence", &SupervisionParams::silence, "What replaces them when none arrive."),
-        field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
-        field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("packets", &SupervisionParams::packets, "Limits for packets from the other site."),
+        field("silence", &SupervisionParams::silence, "Values that replace the received ones while no packets arrive."),
+        field("watchdog", &SupervisionParams::watchdog, "Time without packets after which the site holds."),
+        field("force_sensor", &SupervisionParams::force_sensor, "Check of the force sensor at the tip."),
         field("hand_sensor", &SupervisionParams::hand_sensor,
-              "When the master's motor and the force sensor at the hand contradict one another; for a master that has "
-              "such a sensor, else out of reach."),
-        field("overload", &SupervisionParams::overload, "How many control cycles a site may miss before it holds."),
-        field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
-        field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
+              "Check of the master's motor against the force sensor at the hand, for a master with such a sensor; "
+              "without one, leave the limit so large that it never applies."),
+        field("overload", &SupervisionParams::overload, "Limit of missed control cycles above which a site holds."),
+        field("probe", &SupervisionParams::probe, "The force that tests the sign of a site's motor on arming."),
+        field("hold", &SupervisionParams::hold, "The force when the site holds."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
-              "Share by which the other site's clock may run slower or faster before the site holds; above what it may "
-              "miss of its control cycles."),
+              "Share by which the other site's clock may run slower or faster before the site holds; above the share "
+              "of control cycles that it may miss."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
-        field(
-            "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
-            "How long the master waits for the slave to follow an arming before it gives it up and holds; longer than "
-            "the round trip, and with a sign probe than that, blend_s and all of its trials together."),
+        field("answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
+              "Time within which the slave must confirm an arming, otherwise the master holds. Longer than the round "
+              "trip; with a sign probe longer than the round trip, blend_s and all trials of the probe together."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
-              "How long a force takes to come in when a site becomes active, and to go.")};
+              "Time in which a force ramps in when a site becomes active, and ramps out when it stops.")};
   }
 };
 

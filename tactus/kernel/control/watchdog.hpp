@@ -18,7 +18,7 @@ class Watchdog {
     double timeout_s = 0.1;
     static constexpr auto fields() {
       return List{field("timeout_s", &Params::timeout_s, units::second, positive_up_to(10.0),
-                        "Silence after which the watchdog barks.")};
+                        "Time without packets after which the watchdog puts the site into hold.")};
     }
   };
   struct Input {

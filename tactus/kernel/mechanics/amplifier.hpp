@@ -47,11 +47,11 @@ class CurrentAmplifier {
     double limit_N = 10.0;
     static constexpr auto fields() {
       return List{field("gain", &Params::gain, units::none, between(0.0, 10.0),
-                        "Applied over commanded force, 1 when calibrated."),
+                        "Applied force divided by commanded force; 1 if calibrated."),
                   field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
                         "Corner frequency of the first-order lag."),
                   field("limit_N", &Params::limit_N, units::newton, positive,
-                        "Largest force either way; beyond it the amplifier saturates.")};
+                        "Largest force in either direction; above it the amplifier saturates.")};
     }
   };
   using Input = double;

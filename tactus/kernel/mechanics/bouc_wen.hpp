@@ -79,7 +79,8 @@ class BoucWenSpring {
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
                 "Share of the small-deflection stiffness that is lost at large deflection; 0 is a linear spring."),
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,
-                "Deflection scale d of the slip: from rest, 63 % of the hysteretic part has given way at d."),
+                "Deflection scale d of the slip: at a deflection of d from rest, 63 % of the hysteretic part has "
+                "slipped."),
           field("reference_deflection_m", &Params::reference_deflection_m, units::metre, positive,
                 "Amplitude of the closed loop that the average stiffness refers to (1 N on the master's linkage).")};
     }

@@ -71,7 +71,7 @@ class ElastoSlipSpring {
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
                 "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
-                "Share of the small-deflection stiffness that is lost once everything slips; 0 is a linear spring."),
+                "Share of the small-deflection stiffness that is lost when all elements slip; 0 is a linear spring."),
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,
                 "Deflection from rest at which the last of the four elements begins to slip."),
           field("reference_deflection_m", &Params::reference_deflection_m, units::metre, positive,

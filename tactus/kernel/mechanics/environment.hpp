@@ -35,14 +35,14 @@ class Environment {
     double dissipation_s_per_m = 0.5;
     static constexpr auto fields() {
       return List{
-          field("law", &Params::law, "Contact law of the wall; bonded pulls as it pushes."),
-          field("position_m", &Params::position_m, units::metre, between(-1.0, 1.0), "Where the wall's surface is."),
+          field("law", &Params::law, "Contact law of the wall; bonded also resists pulling."),
+          field("position_m", &Params::position_m, units::metre, between(-1.0, 1.0), "Position of the wall's surface."),
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, between(0.0, 1e7),
                 "Stiffness of the wall; with Hunt-Crossley the secant stiffness at a depth of 0.1 mm."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, between(0.0, 1e4),
                 "Viscous damping of the wall (not with Hunt-Crossley)."),
           field("exponent", &Params::exponent, units::none, between(1.0, 2.5),
-                "Growth of the force with depth (Hunt-Crossley only)."),
+                "Exponent of the growth of the force with depth (Hunt-Crossley only)."),
           field("dissipation_s_per_m", &Params::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
                 "Relative growth of the force with the rate of depth (Hunt-Crossley only).")};
     }

@@ -25,10 +25,10 @@ class ForceSensor {
                         "The -3 dB frequency of the analogue part; below half the rate of the substeps."),
                   field("noise_rms_N", &Params::noise_rms_N, units::newton, non_negative,
                         "Standard deviation of the white noise on every sample."),
-                  field("offset_N", &Params::offset_N, units::newton, any_finite, "Reading at no force."),
+                  field("offset_N", &Params::offset_N, units::newton, any_finite, "Reading without force."),
                   field("limit_N", &Params::limit_N, units::newton, positive,
-                        "Largest reading either way; beyond it the sensor saturates."),
-                  field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
+                        "Largest reading in either direction; above it the sensor saturates."),
+                  field("seed", &Params::seed, non_negative, "Seed of the noise; equal seeds give equal noise.")};
     }
   };
   using Input = double;

@@ -20,13 +20,13 @@ struct StribeckFriction {
   double viscous_N_s_per_m = 300.0;
   static constexpr auto fields() {
     using Params = StribeckFriction;
-    return List{
-        field("coulomb_N", &Params::coulomb_N, units::newton, non_negative, "F_c, while it moves."),
-        field("static_N", &Params::static_N, units::newton, non_negative, "F_s, at rest; not below the Coulomb value."),
-        field("stribeck_velocity_m_per_s", &Params::stribeck_velocity_m_per_s, units::metre_per_second, positive,
-              "v_s, how fast it falls."),
-        field("viscous_N_s_per_m", &Params::viscous_N_s_per_m, units::newton_second_per_metre, non_negative,
-              "Growth with velocity.")};
+    return List{field("coulomb_N", &Params::coulomb_N, units::newton, non_negative, "F_c, Coulomb friction in motion."),
+                field("static_N", &Params::static_N, units::newton, non_negative,
+                      "F_s, friction at rest; not below the Coulomb value."),
+                field("stribeck_velocity_m_per_s", &Params::stribeck_velocity_m_per_s, units::metre_per_second,
+                      positive, "v_s, velocity that characterises the fall from F_s to F_c."),
+                field("viscous_N_s_per_m", &Params::viscous_N_s_per_m, units::newton_second_per_metre, non_negative,
+                      "Growth of the friction with velocity.")};
   }
 };
 
@@ -65,17 +65,20 @@ class HydraulicCylinder {
       return List{
           field("first_area_m2", &Params::first_area_m2, units::square_metre, positive,
                 "Piston area of the chamber that pushes toward +x."),
-          field("second_area_m2", &Params::second_area_m2, units::square_metre, positive, "And of the other."),
-          field("stroke_m", &Params::stroke_m, units::metre, positive, "From end stop to end stop."),
+          field("second_area_m2", &Params::second_area_m2, units::square_metre, positive,
+                "Piston area of the other chamber."),
+          field("stroke_m", &Params::stroke_m, units::metre, positive, "Distance between the end stops."),
           field("dead_volume_m3", &Params::dead_volume_m3, units::cubic_metre, positive,
-                "Oil left in a chamber, hose and valve when the piston is at its end."),
-          field("bulk_modulus_Pa", &Params::bulk_modulus_Pa, units::pascal, positive, "Of the oil, effective."),
+                "Volume of oil in a chamber, hose and valve when the piston is at its end."),
+          field("bulk_modulus_Pa", &Params::bulk_modulus_Pa, units::pascal, positive,
+                "Effective bulk modulus of the oil."),
           field("leakage_m3_per_s_per_Pa", &Params::leakage_m3_per_s_per_Pa, units::cubic_metre_per_second_per_pascal,
                 non_negative, "Laminar leakage from chamber to chamber."),
-          field("supply_Pa", &Params::supply_Pa, units::pascal, positive, "Of the pump; constant."),
-          field("tank_Pa", &Params::tank_Pa, units::pascal, non_negative, "Of the return; below the supply's."),
-          field("mass_kg", &Params::mass_kg, units::kilogram, positive, "Piston, rod and load."),
-          field("friction", &Params::friction, "Of the seals."),
+          field("supply_Pa", &Params::supply_Pa, units::pascal, positive, "Constant pressure of the pump."),
+          field("tank_Pa", &Params::tank_Pa, units::pascal, non_negative,
+                "Pressure of the return line; below supply_Pa."),
+          field("mass_kg", &Params::mass_kg, units::kilogram, positive, "Mass of piston, rod and load."),
+          field("friction", &Params::friction, "Friction of the seals."),
           field("end_stop", &Params::end_stop, "Contact of piston and cylinder at both ends.")};
     }
   };

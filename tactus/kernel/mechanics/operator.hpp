@@ -69,13 +69,12 @@ class Operator {
     double bandwidth_Hz = 5.0;
     double reaction_time_s = 0.1;
     static constexpr auto fields() {
-      return List{
-          field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
-                "Speed of the correction per metre of error; 0 switches it off, above 8 an operator would oscillate."),
-          field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
-                "Corner of the first-order low-pass on the error that is corrected."),
-          field("reaction_time_s", &Correction::reaction_time_s, units::second, between(0.0, 0.4),
-                "Time from an error to the start of its correction.")};
+      return List{field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
+                        "Speed of the correction per metre of error; 0 is off. Above 8 an operator would oscillate."),
+                  field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
+                        "Corner of the first-order low-pass on the error that is corrected."),
+                  field("reaction_time_s", &Correction::reaction_time_s, units::second, between(0.0, 0.4),
+                        "Time from an error to the start of its correction.")};
     }
   };
 
@@ -86,12 +85,11 @@ class Operator {
     double start_s = 0.0;
     double duration_s = 0.1;
     static constexpr auto fields() {
-      return List{
-          field("factor", &GripChange::factor, units::none, between(0.05, 20.0),
-                "Stiffness and damping of the grip after the change over those before; 1 is no change."),
-          field("start_s", &GripChange::start_s, units::second, non_negative,
-                "When the change begins, from the start of the run."),
-          field("duration_s", &GripChange::duration_s, units::second, non_negative, "How long the change takes.")};
+      return List{field("factor", &GripChange::factor, units::none, between(0.05, 20.0),
+                        "Stiffness and damping of the grip after the change divided by those before; 1: no change."),
+                  field("start_s", &GripChange::start_s, units::second, non_negative,
+                        "Start of the change, from the start of the run."),
+                  field("duration_s", &GripChange::duration_s, units::second, non_negative, "Duration of the change.")};
     }
     /// The factor in force `time_s` after the start of the run, exactly 1 before the change.
     [[nodiscard]] double at(double time_s) const noexcept {

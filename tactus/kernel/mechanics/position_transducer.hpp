@@ -28,7 +28,7 @@ class PositionTransducer {
                         "Standard deviation of the white noise on every sample."),
                   field("resolution_m", &Params::resolution_m, units::metre, non_negative,
                         "Step of the converter; 0: no quantisation."),
-                  field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
+                  field("seed", &Params::seed, non_negative, "Seed of the noise; equal seeds give equal noise.")};
     }
   };
   using Input = double;

@@ -30,7 +30,7 @@ class PressureSensor {
                   field("resolution_Pa", &Params::resolution_Pa, units::pascal, non_negative,
                         "Step of the converter; 0: no quantisation."),
                   field("limit_Pa", &Params::limit_Pa, units::pascal, positive, "Full scale."),
-                  field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
+                  field("seed", &Params::seed, non_negative, "Seed of the noise; equal seeds give equal noise.")};
     }
   };
   using Input = double;

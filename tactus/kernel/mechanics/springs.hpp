@@ -28,9 +28,9 @@ class LinearSpring {
     double damping_N_s_per_m = 3.6;
     static constexpr auto fields() {
       return List{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                        "Force per deflection (the master's cable: 39500, paper A, Table I)."),
+                        "Force per deflection."),
                   field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
-                        "Force per rate of deflection (the master's cable: 3.6).")};
+                        "Force per rate of deflection.")};
     }
   };
   using Input = Stretch;
@@ -84,7 +84,7 @@ class QuinticSpring {
                   field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
                         "Force per rate of deflection (paper A, Table I: 23)."),
                   field("guard_m", &Params::guard_m, units::metre, positive,
-                        "Deflection beyond which the quintic part grows no further, for numerical safety.")};
+                        "Deflection above which the quintic force stays constant, for numerical safety.")};
     }
   };
   using Input = Stretch;

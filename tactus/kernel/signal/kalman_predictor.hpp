@@ -36,15 +36,16 @@ class KalmanPredictor {
     double measurement_noise = 3e-6;
     double horizon_s = 0.0036;
     static constexpr auto fields() {
-      return List{
-          field("kinematics", &Params::kinematics,
-                "What is constant but for noise: constant-velocity or constant-acceleration."),
-          field("process_noise", &Params::process_noise, units::none, positive,
-                "q: how far velocity (signal/s) or acceleration (signal/s^2) go within a second, standard deviation."),
-          field("measurement_noise", &Params::measurement_noise, units::none, positive,
-                "r: standard deviation of a sample, in the unit of the signal; an encoder's step over the root of 12."),
-          field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),
-                "How far ahead of the newest sample.")};
+      return List{field("kinematics", &Params::kinematics,
+                        "Quantity that is constant except for noise: constant-velocity or constant-acceleration."),
+                  field("process_noise", &Params::process_noise, units::none, positive,
+                        "q: standard deviation of the change of velocity (signal/s) or acceleration (signal/s^2) "
+                        "within a second."),
+                  field("measurement_noise", &Params::measurement_noise, units::none, positive,
+                        "r: standard deviation of a sample, in the unit of the signal; for an encoder its step divided "
+                        "by the root of 12."),
+                  field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),
+                        "Time of the prediction ahead of the newest sample.")};
     }
   };
   using Input = double;

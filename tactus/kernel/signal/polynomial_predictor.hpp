@@ -28,11 +28,11 @@ class PolynomialPredictor {
     std::int64_t degree = 2;
     double horizon_s = 0.0036;
     static constexpr auto fields() {
-      return List{
-          field("samples", &Params::samples, between(1, 128), "Newest samples in the fit; more than the degree."),
-          field("degree", &Params::degree, between(0, 3), "Of the polynomial; 0 is the mean."),
-          field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),
-                "How far behind the newest sample the polynomial is read.")};
+      return List{field("samples", &Params::samples, between(1, 128),
+                        "Number of newest samples in the fit; more than the degree."),
+                  field("degree", &Params::degree, between(0, 3), "Degree of the polynomial; 0 is the mean."),
+                  field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),
+                        "Time after the newest sample at which the polynomial is evaluated.")};
     }
   };
   using Input = double;

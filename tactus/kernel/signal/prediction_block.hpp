@@ -40,7 +40,7 @@ class PredictionBlock {
     Discretisation discretisation = Discretisation::tustin;
     static constexpr auto fields() {
       return List{field("time_constant_s", &Params::time_constant_s, units::second, positive_up_to(10.0),
-                        "Tp: how far the block looks ahead at low frequency."),
+                        "Tp: time by which the block predicts at low frequency."),
                   field("discretisation", &Params::discretisation,
                         "tustin keeps lead and gain limits; exact is exact for an input held between samples.")};
     }
@@ -81,7 +81,7 @@ class PredictionCascade {
     PredictionBlock::Params block;
     static constexpr auto fields() {
       return List{field("blocks", &Params::blocks, between(0, 4), "Blocks in series; 0 predicts nothing."),
-                  field("block", &Params::block, "Each of the blocks.")};
+                  field("block", &Params::block, "Parameters of each block.")};
     }
   };
   using Input = double;

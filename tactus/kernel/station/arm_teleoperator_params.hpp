@@ -29,20 +29,21 @@ struct ArmJoint {
   static constexpr auto fields() {
     using J = ArmJoint;
     namespace u = arm::units;
-    return List{field("start_rad", &J::start_rad, u::radian, any_finite,
-                      "Position at the start of a tap; of a follower that is led joint by joint it is the leader's."),
-                field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
-                      "Inertia of the rotor at the joint's side of the gear."),
-                field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
-                      "Stiffness of an elastic joint over joint_stiffness_N_m_per_rad of its arm."),
-                field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
-                      "Step of the position that the drive reports; 0: exact."),
-                field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
-                      "Step of the velocity that it reports."),
-                field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
-                      "Step of the torque that it reports."),
-                field("play_rad", &J::play_rad, u::radian, between(0.0, 0.1),
-                      "Backlash of the gear, from flank to flank, at the joint; needs an elastic joint.")};
+    return List{
+        field("start_rad", &J::start_rad, u::radian, any_finite,
+              "Position at the start of a tap; a follower that is commanded joint by joint starts at the leader's."),
+        field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
+              "Inertia of the rotor, at the joint's side of the gear."),
+        field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
+              "Stiffness of this joint divided by joint_stiffness_N_m_per_rad of its arm, if joints are elastic."),
+        field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
+              "Step of the position that the drive reports; 0: exact."),
+        field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
+              "Step of the velocity that the drive reports."),
+        field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
+              "Step of the torque that the drive reports."),
+        field("play_rad", &J::play_rad, u::radian, between(0.0, 0.1),
+              "Backlash of the gear, from flank to flank, at the joint; needs an elastic joint.")};
   }
 };
 
@@ -51,9 +52,9 @@ struct ToolPoint {
   double y_m = 0.0;
   double z_m = 0.0;
   static constexpr auto fields() {
-    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Along x of the last link."),
-                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Along y of the last link."),
-                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Along z of the last link.")};
+    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Position along x of the last link."),
+                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Position along y of the last link."),
+                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Position along z of the last link.")};
   }
 };
 
@@ -69,21 +70,21 @@ struct ArmParams {
   static constexpr auto fields() {
     using A = ArmParams;
     return List{field("urdf", &A::urdf,
-                      "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
-                      "the motors, damping and friction rub at them."),
+                      "URDF of the arm, z up; a relative path counts from the experiment's file. Its effort limits "
+                      "limit the motors; its damping and friction act at the joints."),
                 field("tip", &A::tip,
-                      "Name of the link at which the arm ends, if the URDF branches or continues, as with the fingers "
-                      "of a gripper, which then count as fixed; empty: the end of its only chain."),
-                field("tool", &A::tool, "The point that the operator holds, or that touches."),
+                      "Name of the last link of the arm, if the URDF branches or continues, for instance with the "
+                      "fingers of a gripper, which then count as fixed. Empty: the end of the only chain."),
+                field("tool", &A::tool, "The point that the operator holds, or that touches the surface."),
                 field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
-                      between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
+                      between(0.0, 1e6), "Stiffness of the transmission between motor and link; 0 is rigid."),
                 field("assumed_joint_stiffness_N_m_per_rad", &A::assumed_joint_stiffness_N_m_per_rad,
                       Unit{"N m/rad", "_N_m_per_rad"}, between(0.0, 1e6),
-                      "What models and observers of elastic joints take that stiffness for; 0: for what it is."),
+                      "Value of that stiffness in models and observers of elastic joints; 0: the true value."),
                 field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
                       arm::units::newton_metre_second_per_radian, between(0.0, 100.0),
                       "Damping in parallel with that stiffness."),
-                field("joints", &A::joints, "What the URDF does not state of each joint.")};
+                field("joints", &A::joints, "Properties of each joint that the URDF does not contain.")};
   }
 };
 
@@ -93,12 +94,12 @@ struct ArmParams {
 struct ArmPairParams : ArmParams {
   ArmParams follower;
   static constexpr auto fields() {
-    return joined(ArmParams::fields(),
-                  List{field("follower", &ArmPairParams::follower,
-                             "The follower, if it differs from the leader: then all of it is described here. "
-                             "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
-                             "commands joint i of the follower, angle for angle, unless control.follower.coupling "
-                             "is tool.")});
+    return joined(
+        ArmParams::fields(),
+        List{field("follower", &ArmPairParams::follower,
+                   "The follower, if it differs from the leader: state the urdf and all other keys here. Without a "
+                   "urdf here it is like the leader. Joint i of the leader, counted from the base, commands the same "
+                   "angle of joint i of the follower, unless control.follower.coupling is tool.")});
   }
 };
 
@@ -109,8 +110,8 @@ struct ArmControlParams : arm_control::ArmLeader::Params {
     return joined(arm_control::ArmLeader::Params::fields(),
                   List{field("follower", &ArmControlParams::follower, "The follower's site."),
                        field("tare", &ArmControlParams::tare,
-                             "With simulated taps alone: what both arms' gravity compensation lacks is found before "
-                             "the operator takes the leader.")});
+                             "Only with simulated taps: the errors of both arms' gravity compensation are measured "
+                             "before the operator takes the leader.")});
   }
 };
 
@@ -119,12 +120,13 @@ struct ArmClockParams {
   double plant_step_s = 1e-4;
   std::int64_t extra_delay_cycles = 0;
   static constexpr auto fields() {
-    return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
-                      "Control cycles per second; a command acts from the next control cycle on."),
-                field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
-                      "Step of the simulated arms, rounded so that a control cycle is a whole number of them."),
-                field("extra_delay_cycles", &ArmClockParams::extra_delay_cycles, between(0, 20),
-                      "Further control cycles until a command acts on a simulated arm; the sites count with one.")};
+    return List{
+        field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
+              "Control cycles per second; a command acts from the next control cycle on."),
+        field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
+              "Step of the simulated arms, rounded so that a control cycle is a whole number of them."),
+        field("extra_delay_cycles", &ArmClockParams::extra_delay_cycles, between(0, 20),
+              "Additional control cycles until a command acts on a simulated arm; the sites assume one cycle in all.")};
   }
 };
 
@@ -132,8 +134,7 @@ struct ProbeTorque {
   double torque_N_m = 0.0;
   static constexpr auto fields() {
     return List{field("torque_N_m", &ProbeTorque::torque_N_m, arm::units::newton_metre, between(0.0, 100.0),
-                      "Peak of the torque with which its motor is tried, above its friction; 0: that of "
-                      "supervision.probe.")};
+                      "Peak of the torque that tests its motor, above its friction; 0: that of supervision.probe.")};
   }
 };
 
@@ -143,7 +144,7 @@ struct GripperParams : arm_control::DriveGains {
   static constexpr auto fields() {
     return joined(arm_control::DriveGains::fields(),
                   List{field("leader_share", &GripperParams::leader_share, units::none, between(0.0, 1.0),
-                             "The leader's gains over these, which are the follower's.")});
+                             "The leader's gains divided by the follower's, which are those above.")});
   }
 };
 
@@ -157,14 +158,14 @@ struct ArmSupportParams {
     using P = ArmSupportParams;
     return List{
         field("raise_s", &P::raise_s, units::second, between(0.5, 30.0),
-              "Time in which gravity compensation comes in, from nothing to all of it."),
+              "Time in which gravity compensation ramps in."),
         field("weight_share", &P::weight_share, units::none, positive_up_to(1.0),
-              "Share of a joint's gravity torque by which it may be wrong; or else the torque with which the motor is "
-              "tried, whichever is more. Beyond it the arm is released."),
+              "Tolerated error of gravity compensation as a share of a joint's gravity torque, but at least the torque "
+              "of the motor test. Above it the arm is released."),
         field("most_rad", &P::most_rad, arm::units::radian, positive_up_to(0.03),
-              "Travel of a joint meanwhile beyond which the arm is released; m of one that slides."),
+              "Travel of a joint during the ramp above which the arm is released; m for a joint that slides."),
         field("most_rad_per_s", &P::most_rad_per_s, arm::units::radian_per_second, positive_up_to(0.5),
-              "Speed of a joint meanwhile beyond which it is; m/s of one that slides.")};
+              "Speed of a joint during the ramp above which the arm is released; m/s for a joint that slides.")};
   }
 };
 
@@ -179,16 +180,16 @@ struct ArmRigParams {
   GripperParams gripper{{.stiffness_N_m_per_rad = 0.0, .damping_N_m_s_per_rad = 0.0}};
   static constexpr auto fields() {
     using P = ArmRigParams;
-    return List{
-        field("leader_gate", &P::leader_gate,
-              "The safety gate of each of the leader's joints; the limits of the rig file apply as well."),
-        field("follower_gate", &P::follower_gate, "The same of the follower's."),
-        field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
-        field("support", &P::support, "How gravity compensation comes in on arming, and how it is judged."),
-        field("probe_torque", &P::probe_torque, "With which torque each motor's sign is tried on arming."),
-        field("motor_watch", &P::motor_watch, "When a motor does not give the torque that it is commanded."),
-        field("gripper", &P::gripper,
-              "How joints of the rig are driven that the arm does not have; with no gains such a joint is refused.")};
+    return List{field("leader_gate", &P::leader_gate,
+                      "The safety gate of each of the leader's joints; the limits of the rig file apply as well."),
+                field("follower_gate", &P::follower_gate, "The safety gate of each of the follower's joints."),
+                field("supervision", &P::supervision, "Supervision of each site and of its peer."),
+                field("support", &P::support, "The ramp of gravity compensation on arming, and its checks."),
+                field("probe_torque", &P::probe_torque, "The torque that tests the sign of each motor on arming."),
+                field("motor_watch", &P::motor_watch, "Detection of a motor that does not apply the commanded torque."),
+                field("gripper", &P::gripper,
+                      "Gains of the rig's joints that the arm's URDF does not contain, such as a gripper; without "
+                      "gains such a joint is refused.")};
   }
 };
 
@@ -200,11 +201,11 @@ struct ArmTeleoperatorParams {
   ArmRigParams rig;
   static constexpr auto fields() {
     using P = ArmTeleoperatorParams;
-    return List{field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower differs."),
+    return List{field("arm", &P::arm, "The leader, and also the follower unless arm.follower describes another arm."),
                 field("control", &P::control, "The sites of both arms."), field("servo", &P::servo, "The clocks."),
                 field("rig", &P::rig,
-                      "With --device and tactus faults only: gates and supervision between the sites and the motors of "
-                      "a rig. If a key has N, m or m/s, N m, rad or rad/s are meant.")};
+                      "Only with --device and tactus faults: gates and supervision between the sites and the motors of "
+                      "a rig. For a joint that turns, N, m and m/s in a key mean N m, rad and rad/s.")};
   }
 };
 

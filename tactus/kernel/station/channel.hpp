@@ -21,7 +21,7 @@ struct ChannelParams {
     return List{field("delay_s", &ChannelParams::delay_s, units::second, between(0.0, 1.0),
                       "Shortest delay, rounded to whole control cycles."),
                 field("jitter_s", &ChannelParams::jitter_s, units::second, between(0.0, 1.0),
-                      "Longest delay on top of it, drawn evenly for every message."),
+                      "Longest additional delay, drawn uniformly for every message."),
                 field("loss_fraction", &ChannelParams::loss_fraction, units::none, between(0.0, 1.0),
                       "Share of the messages that never arrive."),
                 field("seed", &ChannelParams::seed, non_negative, "Seed of jitter and loss.")};

@@ -17,8 +17,8 @@ struct ServoParams {
     return List{field("rate_Hz", &ServoParams::rate_Hz, units::hertz, between(500.0, 20000.0),
                       "Control cycles per second (paper A: 5000)."),
                 field("computation_delay_s", &ServoParams::computation_delay_s, units::second, between(0.0, 0.002),
-                      "From a sample to the change of the command that follows from it, rounded to whole plant "
-                      "steps, less than a control cycle.")};
+                      "Time from a sample to the change of the command that results from it, rounded to whole plant "
+                      "steps; less than a control cycle.")};
   }
 };
 

@@ -21,11 +21,13 @@ struct ValveCurrentModelParams {
   double derivative_filter_s = 0.003;
   static constexpr auto fields() {
     using P = ValveCurrentModelParams;
-    return List{field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere, positive,
-                      "K_a: the stall force over the current that opens the valve all the way."),
-                field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s, as weighed."),
-                field("force_filter_s", &P::force_filter_s, units::second, non_negative, "T_f."),
-                field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative, "T_d.")};
+    return List{
+        field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere, positive,
+              "K_a: the stall force divided by the current that opens the valve fully."),
+        field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s, as weighed."),
+        field("force_filter_s", &P::force_filter_s, units::second, non_negative, "T_f: low-pass on command and force."),
+        field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative,
+              "T_d: low-pass on velocity.")};
   }
 };
 

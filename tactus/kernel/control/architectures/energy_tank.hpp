@@ -36,20 +36,20 @@ class EnergyTank {
     double fastest_m_per_s = 1.0;
     signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
     static constexpr auto fields() {
-      return List{
-          field("desired_level_J", &Params::desired_level_J, units::joule, positive_up_to(100.0),
-                "Level at the start, and below which the master draws energy from the hand."),
-          field("capacity_J", &Params::capacity_J, units::joule, positive_up_to(1000.0),
-                "Level above which energy is thrown away, so that a long press does not pay for a long instability."),
-          field("transfer_per_s", &Params::transfer_per_s, units::per_second, between(0.0, 1e4),
-                "Share of the level that is sent to the other site, per time."),
-          field("refill_damping_N_s_per_m", &Params::refill_damping_N_s_per_m, units::newton_second_per_metre,
-                between(0.0, 1000.0),
-                "Damping with which the master draws energy when its tank is empty; less in proportion up to the "
-                "desired level."),
-          field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                "Highest speed of the motor, encoder step per control cycle included."),
-          field("velocity", &Params::velocity, "Filter of the velocity on which the drawing damping acts.")};
+      return List{field("desired_level_J", &Params::desired_level_J, units::joule, positive_up_to(100.0),
+                        "Level at the start; below this level the master draws energy from the hand."),
+                  field("capacity_J", &Params::capacity_J, units::joule, positive_up_to(1000.0),
+                        "Level above which energy is discarded, so that a long press does not store the energy for a "
+                        "long instability."),
+                  field("transfer_per_s", &Params::transfer_per_s, units::per_second, between(0.0, 1e4),
+                        "Share of the level that is sent to the other site per second."),
+                  field("refill_damping_N_s_per_m", &Params::refill_damping_N_s_per_m, units::newton_second_per_metre,
+                        between(0.0, 1000.0),
+                        "Damping with which the master draws energy when its tank is empty; it decreases linearly to "
+                        "zero at the desired level."),
+                  field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
+                        "Highest speed of the motor, including one encoder step per control cycle."),
+                  field("velocity", &Params::velocity, "Filter of the velocity for the damping that draws energy.")};
     }
   };
 

@@ -43,13 +43,13 @@ struct FourChannelParams {
     return List{
         field("master", &FourChannelParams::master, "The master's position controller: C_m, and C_4 without inertia."),
         field("environment_force_gain", &FourChannelParams::environment_force_gain, units::none, between(0.0, 1000.0),
-              "C_2 over the force gain; transparent at 1 + master_force_loop_gain."),
+              "C_2 divided by the force gain; transparent at 1 + master_force_loop_gain."),
         field("hand_force_gain", &FourChannelParams::hand_force_gain, units::none, between(0.0, 1000.0),
               "C_3 times the force gain; transparent at 1 + slave_force_loop_gain."),
         field("slave_force_loop_gain", &FourChannelParams::slave_force_loop_gain, units::none, between(-1.0, 100.0),
-              "C_5, local force loop: the slave gives way to 1 + C_5 times the tip force."),
+              "C_5, local force loop: the slave yields to 1 + C_5 times the tip force."),
         field("master_force_loop_gain", &FourChannelParams::master_force_loop_gain, units::none, between(-1.0, 100.0),
-              "C_6, local force loop: the master gives way to 1 + C_6 times the hand force."),
+              "C_6, local force loop: the master yields to 1 + C_6 times the hand force."),
         field("master_feedforward_kg", &FourChannelParams::master_feedforward_kg, units::kilogram, between(0.0, 100.0),
               "Mass of the master in C_4, times the slave's filtered acceleration; 0 leaves it out."),
         field("slave_feedforward_kg", &FourChannelParams::slave_feedforward_kg, units::kilogram, between(0.0, 100.0),
@@ -92,7 +92,7 @@ class FourChannelMaster {
     static constexpr auto fields() {
       return List{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
-                "Slave motion over master motion, lambda."),
+                "Slave motion divided by master motion, lambda."),
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0), "Hand force over tip force, mu."),
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
                 "Where the displayed force saturates."),

@@ -71,20 +71,20 @@ class PositionForceMaster {
     static constexpr auto fields() {
       return List{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
-                "Slave motion over master motion, lambda."),
+                "Slave motion divided by master motion, lambda."),
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0),
-                "Displayed force over tip force, mu."),
+                "Displayed force divided by tip force, mu."),
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                "Where the displayed force saturates, that of the motor and that of the handle each."),
+                "Limit of the displayed force; it applies to the motor and to the actuator on the handle separately."),
           field("hand_compensation_Hz", &Params::hand_compensation_Hz, units::hertz, non_negative,
-                "Up to where the master's dynamics between motor and hand are undone, so that the hand gets the force "
-                "that the slave felt; below half the servo rate; 0 is off."),
+                "Frequency up to which the master's dynamics between motor and hand are compensated, so that the hand "
+                "receives the force at the slave; below half the servo rate. 0 is off."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_model", &Params::cancellation_model,
-                "How much of master and hand the model of cancellation distinguishes."),
-          field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
+                "Parts of master and hand that the model of cancellation distinguishes."),
+          field("cancellation_step", &Params::cancellation_step, "Integration method of the model of cancellation."),
           field("cancellation_friction", &Params::cancellation_friction,
-                "On which velocity the Coulomb friction of the sixth-order model acts."),
+                "Velocity on which the Coulomb friction of the sixth-order model acts."),
           field("operator_estimate", &Params::operator_estimate,
                 "Source of the firmness of the operator's grip for cancellation."),
           field("model", &Params::model, "The controller's model of master and hand."),

@@ -46,8 +46,8 @@ Architecture projection_architecture() {
   return {.name = "projection",
           .summary = "position-force that displays at once only what the hand holds",
           .make = make_projection,
-          .keys = own_keys<ProjectionParams>("projection",
-                                             "Architecture projection: what of the force is reflected at once.")};
+          .keys = own_keys<ProjectionParams>(
+              "projection", "Architecture projection: share of the force that is displayed immediately.")};
 }
 
 }  // namespace tactus::control

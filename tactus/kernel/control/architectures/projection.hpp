@@ -15,10 +15,10 @@ struct ProjectionParams {
   static constexpr auto fields() {
     return List{
         field("unconditional_fraction", &ProjectionParams::unconditional_fraction, units::none, between(0.0, 1.0),
-              "Share of the force that is displayed whether the hand holds it or not, alpha; 1 is position-force."),
+              "alpha: share of the force that is displayed even if the hand does not resist it; 1 is position-force."),
         field("negligible_force_N", &ProjectionParams::negligible_force_N, units::newton,
               Bounds{.lower = 1e-6, .upper = 100.0},
-              "Hand force below which its direction counts less and less, the square root of epsilon."),
+              "Square root of epsilon: hand force below which the weight of its direction decreases."),
         field("hand_force_cutoff_Hz", &ProjectionParams::hand_force_cutoff_Hz, units::hertz, positive,
               "Low-pass of the estimate of the hand force; below 0.44 of the sample rate.")};
   }

@@ -22,7 +22,7 @@ Architecture shared_compliant_architecture() {
           .summary = "position-force whose slave yields to the tip force by itself",
           .make = make_shared_compliant,
           .keys = own_keys<ComplianceParams>(
-              "compliance", "Architecture shared-compliant: how the slave's command yields to the tip force.")};
+              "compliance", "Architecture shared-compliant: compliance of the slave's command to the tip force.")};
 }
 
 }  // namespace tactus::control

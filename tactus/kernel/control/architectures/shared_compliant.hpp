@@ -12,11 +12,11 @@ struct ComplianceParams {
   double stiffness_N_per_m = 100.0;
   double cutoff_Hz = 2.0;
   static constexpr auto fields() {
-    return List{
-        field("stiffness_N_per_m", &ComplianceParams::stiffness_N_per_m, units::newton_per_metre,
-              Bounds{.lower = 1.0, .upper = 1e6}, "Tip force per distance that the slave's command yields at rest."),
-        field("cutoff_Hz", &ComplianceParams::cutoff_Hz, units::hertz, positive,
-              "Low-pass on the tip force that the command yields to; below half the sample rate.")};
+    return List{field("stiffness_N_per_m", &ComplianceParams::stiffness_N_per_m, units::newton_per_metre,
+                      Bounds{.lower = 1.0, .upper = 1e6},
+                      "Tip force divided by the distance by which the slave's command yields at rest."),
+                field("cutoff_Hz", &ComplianceParams::cutoff_Hz, units::hertz, positive,
+                      "Low-pass on the tip force to which the command yields; below half the sample rate.")};
   }
 };
 

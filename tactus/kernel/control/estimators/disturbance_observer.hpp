@@ -28,7 +28,7 @@ class DisturbanceObserver {
     double cutoff_Hz = 100.0;
     static constexpr auto fields() {
       return List{field("model", &Params::model, "The nominal slave."),
-                  field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive, "-3 dB of the estimate.")};
+                  field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive, "-3 dB frequency of the estimate.")};
     }
   };
   using Input = SlaveMotionSample;

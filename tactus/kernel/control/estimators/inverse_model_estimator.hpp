@@ -40,12 +40,13 @@ struct FrictionFunction {
   double quadratic = 0.00045;
   static constexpr auto fields() {
     return List{
-        field("law", &FrictionFunction::law, "none, sigmoid, smooth-coulomb or dead-band-coulomb."),
+        field("law", &FrictionFunction::law, "Friction law: none, sigmoid, smooth-coulomb or dead-band-coulomb."),
         field("force_N", &FrictionFunction::force_N, units::newton, non_negative,
               "Coulomb friction, or the factor of the sigmoid (the paper's h_e)."),
-        field("offset_N", &FrictionFunction::offset_N, units::newton, any_finite, "Force that motion does not change."),
+        field("offset_N", &FrictionFunction::offset_N, units::newton, any_finite,
+              "Constant force, independent of the motion."),
         field("velocity_scale_m_per_s", &FrictionFunction::velocity_scale_m_per_s, units::metre_per_second, positive,
-              "Velocity at which r is 1."),
+              "Velocity at which the argument r of the law is 1."),
         field("linear", &FrictionFunction::linear, units::none, non_negative, "Linear share of the sigmoid."),
         field("quadratic", &FrictionFunction::quadratic, units::none, non_negative, "Quadratic share of the sigmoid.")};
   }
@@ -92,11 +93,11 @@ class InverseModelEstimator {
     signal::Predictor::Params prediction;
     static constexpr auto fields() {
       return List{
-          field("form", &Params::form, "Which keys state the linear model: mass-damping or rational."),
+          field("form", &Params::form, "Keys that describe the linear model: mass-damping or rational."),
           field("mass_kg", &Params::mass_kg, units::kilogram, non_negative, "Moving mass M (mass-damping)."),
           field("viscous_damping_N_s_per_m", &Params::viscous_damping_N_s_per_m, units::newton_second_per_metre,
                 non_negative, "Viscous damping h (mass-damping)."),
-          field("plant", &Params::plant, "Position over actuator force, N(s)/D(s) (rational)."),
+          field("plant", &Params::plant, "Transfer function from actuator force to position, N(s)/D(s) (rational)."),
           field("friction", &Params::friction, "Friction in addition to the linear model."),
           field("actuator_gain", &Params::actuator_gain, units::none, any_finite,
                 "K_a: force in N for one unit of the command; not 0."),
@@ -107,10 +108,9 @@ class InverseModelEstimator {
           field("derivative_filter_s", &Params::derivative_filter_s, units::second, non_negative,
                 "T_d: low-pass on velocity; 0: no filter."),
           field("declared_delay_s", &Params::declared_delay_s, units::second, non_negative,
-                "Delays and lags of actuator and sensor together, as far as prediction must make up for them; 0 "
-                "declares none."),
+                "Sum of those delays and lags of actuator and sensor that prediction must compensate; 0: none."),
           field("prediction", &Params::prediction,
-                "What predicts the measured position: blocks or one of their rivals.")};
+                "Prediction of the measured position: by blocks or by one of their rivals.")};
     }
   };
   using Input = SlaveMotionSample;

@@ -33,11 +33,11 @@ class KalmanForceEstimator {
       return List{
           field("model", &Params::model, "The nominal slave."),
           field("force_walk_N", &Params::force_walk_N, units::newton, positive,
-                "q: how far the force is expected to go within a second, standard deviation."),
+                "q: standard deviation of the change of the force within a second."),
           field("model_noise_N", &Params::model_noise_N, units::newton, positive,
-                "w: what the model lacks as white noise of the force, standard deviation of its mean over a second."),
+                "w: error of the model as white noise of the force; standard deviation of its mean over a second."),
           field("position_noise_m", &Params::position_noise_m, units::metre, positive,
-                "r: noise of the measured position, standard deviation.")};
+                "r: standard deviation of the noise of the measured position.")};
     }
   };
   using Input = SlaveMotionSample;

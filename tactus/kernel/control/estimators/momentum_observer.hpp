@@ -32,10 +32,10 @@ class MomentumObserver {
     double cutoff_Hz = 100.0;
     signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
     static constexpr auto fields() {
-      return List{
-          field("model", &Params::model, "The nominal slave."),
-          field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive, "-3 dB of the estimate, for exact velocity."),
-          field("velocity", &Params::velocity, "Low-pass of the velocity.")};
+      return List{field("model", &Params::model, "The nominal slave."),
+                  field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive,
+                        "-3 dB frequency of the estimate, if the velocity is exact."),
+                  field("velocity", &Params::velocity, "Low-pass of the velocity.")};
     }
   };
   using Input = SlaveMotionSample;

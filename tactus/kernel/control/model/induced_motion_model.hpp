@@ -56,16 +56,15 @@ struct MasterModel {
   mechanics::QuinticSpring::Params hand;
   double linear_hand_stiffening = 10.0;
   static constexpr auto fields() {
-    return List{
-        field("motor", &MasterModel::motor, "Motor rotor."),
-        field("cable", &MasterModel::cable, "Cable between motor and drum."),
-        field("drum", &MasterModel::drum, "Drum."),
-        field("linkage", &MasterModel::linkage, "Linkage between drum and handle, with hysteresis."),
-        field("handle", &MasterModel::handle, "Handle."),
-        field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections."),
-        field("linear_hand_stiffening", &MasterModel::linear_hand_stiffening, units::none, between(1.0, 1000.0),
-              "Factor on the stiffness of the hand in the linear models, which have no quintic spring: by about so "
-              "much they underestimate slow deflection.")};
+    return List{field("motor", &MasterModel::motor, "Motor rotor."),
+                field("cable", &MasterModel::cable, "Cable between motor and drum."),
+                field("drum", &MasterModel::drum, "Drum."),
+                field("linkage", &MasterModel::linkage, "Linkage between drum and handle, with hysteresis."),
+                field("handle", &MasterModel::handle, "Handle."),
+                field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections."),
+                field("linear_hand_stiffening", &MasterModel::linear_hand_stiffening, units::none, between(1.0, 1000.0),
+                      "Factor on the stiffness of the hand in the linear models, which have no quintic spring. They "
+                      "underestimate slow deflections by about this factor.")};
   }
 };
 
@@ -111,9 +110,9 @@ class InducedMotionModel {
     double friction_band_m_per_s = 0.005;
     static constexpr auto fields() {
       return List{
-          field("master", &Params::master, "Master and hand."),
+          field("master", &Params::master, "Mass of master and hand."),
           field("fidelity", &Params::fidelity, "How much of them the model distinguishes."),
-          field("step", &Params::step, "How the model is advanced."),
+          field("step", &Params::step, "Integration method of the model."),
           field("friction", &Params::friction, "On which velocity Coulomb friction acts, in the model that has it."),
           field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second, positive,
                 "Intended velocity above which friction counts as saturated by it.")};

@@ -30,8 +30,8 @@ class Crossover {
     double frequency_Hz = 0.0;
     static constexpr auto fields() {
       return List{field("frequency_Hz", &Params::frequency_Hz, units::hertz, non_negative,
-                        "The force below goes to the motor, the rest to the actuator on the handle; below half "
-                        "the servo rate; 0 is off: all goes to the motor.")};
+                        "Force below this frequency goes to the motor, the rest to the actuator on the handle; below "
+                        "half the servo rate. 0 is off: all force goes to the motor.")};
     }
   };
   /// The whole force, in N.

@@ -37,7 +37,7 @@ class HandForceCompensation {
     MasterModel master;
     double band_Hz = 0.0;
     static constexpr auto fields() {
-      return List{field("master", &Params::master, "Master and hand."),
+      return List{field("master", &Params::master, "Mass of master and hand."),
                   field("band_Hz", &Params::band_Hz, units::hertz, non_negative,
                         "Where the force at the hand is 3 dB down; below half the servo rate; 0 is off.")};
     }

@@ -38,11 +38,12 @@ class ShapingFilter {
     double frequency_Hz = 75.0;
     double notch_width_Hz = 75.0;
     static constexpr auto fields() {
-      return List{field("kind", &Params::kind, "What it takes out: none, low-pass (all above) or notch (a band)."),
-                  field("frequency_Hz", &Params::frequency_Hz, units::hertz, positive,
-                        "The -3 dB frequency of the low-pass, the centre of the notch; below half the servo rate."),
-                  field("notch_width_Hz", &Params::notch_width_Hz, units::hertz, positive,
-                        "Distance between the two -3 dB frequencies of the notch; below half the servo rate.")};
+      return List{
+          field("kind", &Params::kind, "Frequencies that it removes: none, low-pass (all above) or notch (a band)."),
+          field("frequency_Hz", &Params::frequency_Hz, units::hertz, positive,
+                "The -3 dB frequency of the low-pass, or the centre of the notch; below half the servo rate."),
+          field("notch_width_Hz", &Params::notch_width_Hz, units::hertz, positive,
+                "Distance between the two -3 dB frequencies of the notch; below half the servo rate.")};
     }
   };
   using Input = double;

@@ -34,18 +34,18 @@ struct ArmContestTask {
   std::string bare;
   static constexpr auto fields() {
     using T = ArmContestTask;
-    return List{field("kind", &T::kind, "Which experiment this is."),
-                field("taps", &T::taps, between(1, 100000), "Taps at each gain that is tried."),
-                field("seed", &T::seed, non_negative, "Seed that draws them."),
-                field("pose", &T::pose, between(0, 1000), "Where both arms begin, as in `arm-tapping`."),
-                field("direction", &T::direction, "Direction of the surface to which the operator moves."),
-                field("model_error", &T::model_error, units::none, between(0.0, 0.5),
-                      "Errors that every tap draws of the model of induced motion."),
-                field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0),
-                      "Where the search for the largest gain ends downward."),
-                field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0), "Where it ends upward."),
-                field("bare", &T::bare,
-                      "File with what a pair is without what is recommended for it: the base of the other methods.")};
+    return List{
+        field("kind", &T::kind, "Kind of the experiment."),
+        field("taps", &T::taps, between(1, 100000), "Number of taps at each gain that is tried."),
+        field("seed", &T::seed, non_negative, "Seed from which the taps are drawn."),
+        field("pose", &T::pose, between(0, 1000), "Initial pose of both arms, as in `arm-tapping`."),
+        field("direction", &T::direction, "Direction of the surface to which the operator moves."),
+        field("model_error", &T::model_error, units::none, between(0.0, 0.5),
+              "Largest error of the model of induced motion, as a share; each tap draws its errors."),
+        field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0), "Smallest gain of the search."),
+        field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0), "Largest gain of the search."),
+        field("bare", &T::bare,
+              "File that removes the recommended settings from a pair; the other methods start from the result.")};
   }
 };
 
@@ -56,9 +56,11 @@ struct ArmContestPair {
   std::string with;
   static constexpr auto fields() {
     using P = ArmContestPair;
-    return List{field("name", &P::name, "Its name in the table; without one there is no such pair."),
-                field("file", &P::file, "Experiment of the kind arm-tapping, as recommended; counts from this file."),
-                field("with", &P::with, "File whose keys replace that experiment's; empty: none.")};
+    return List{field("name", &P::name, "Name of the pair in the table; empty: this pair does not exist."),
+                field("file", &P::file,
+                      "Experiment file of the kind arm-tapping with the recommended settings; a relative path counts "
+                      "from this file."),
+                field("with", &P::with, "File whose keys replace those of that experiment; empty: none.")};
   }
 };
 
@@ -67,9 +69,9 @@ struct ArmContestHand {
   std::string name;
   std::string with;
   static constexpr auto fields() {
-    return List{
-        field("name", &ArmContestHand::name, "Its name in the table; without one there is no such hand."),
-        field("with", &ArmContestHand::with, "File with the hand, or none for that of each pair's experiment.")};
+    return List{field("name", &ArmContestHand::name, "Name of the hand in the table; empty: this hand does not exist."),
+                field("with", &ArmContestHand::with,
+                      "File that describes the hand; empty: the hand of each pair's experiment.")};
   }
 };
 
@@ -97,7 +99,7 @@ struct ArmContestParams {
   static constexpr auto fields() {
     using P = ArmContestParams;
     return List{field("task", &P::task, "The taps and the search."), field("pairs", &P::pairs, "The arms."),
-                field("hands", &P::hands, "Who holds them.")};
+                field("hands", &P::hands, "The hands that hold the leader.")};
   }
 };
 

@@ -40,9 +40,9 @@ struct ArmWallParams {
                 field("stiffness_N_per_m", &W::stiffness_N_per_m, units::newton_per_metre, between(100.0, 1e6),
                       "Stiffness of the surface; with Hunt-Crossley the secant stiffness at a depth of 0.1 mm."),
                 field("damping_N_s_per_m", &W::damping_N_s_per_m, units::newton_second_per_metre, between(0.0, 1e4),
-                      "Its damping (not with Hunt-Crossley)."),
+                      "Damping of the surface (not with Hunt-Crossley)."),
                 field("exponent", &W::exponent, units::none, between(1.0, 2.5),
-                      "Growth of the force with depth (Hunt-Crossley only)."),
+                      "Exponent of the growth of the force with depth (Hunt-Crossley only)."),
                 field("dissipation_s_per_m", &W::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
                       "Relative growth of the force with the rate of depth (Hunt-Crossley only).")};
   }
@@ -61,10 +61,9 @@ struct ArmWallParams {
 struct ArmHarmBounds : HarmBounds {
   double sank_m = 0.025;
   static constexpr auto fields() {
-    return joined(
-        HarmBounds::fields(),
-        List{field("sank_m", &ArmHarmBounds::sank_m, units::metre, positive,
-                   "How far a tool that nobody holds may sink while its site promises gravity compensation.")});
+    return joined(HarmBounds::fields(),
+                  List{field("sank_m", &ArmHarmBounds::sank_m, units::metre, positive,
+                             "Distance that a tool that nobody holds may sink while its site compensates gravity.")});
   }
 };
 
@@ -81,9 +80,9 @@ struct ArmFaultsParams {
                         .release_s = 1.0}};
   static constexpr auto fields() {
     using P = ArmFaultsParams;
-    return List{field("seeds", &P::seeds, between(1, 1000000), "Runs of each fault; task.seed draws them."),
-                field("only", &P::only, "The id of one row, where not all are wanted; empty is all."),
-                field("bounds", &P::bounds, "What a fault may do to people, measured at the tools.")};
+    return List{field("seeds", &P::seeds, between(1, 1000000), "Number of runs of each fault; task.seed draws them."),
+                field("only", &P::only, "Identifier of the only fault to run; empty: all."),
+                field("bounds", &P::bounds, "Limits of the effects of a fault on people, measured at the tools.")};
   }
 };
 
@@ -110,16 +109,17 @@ struct ArmModelErrors {
   double payload_kg = 0.0;
   static constexpr auto fields() {
     using E = ArmModelErrors;
-    return List{
-        field("mass", &E::mass, units::none, between(0.0, 0.5), "Share of the mass and the inertia of each link."),
-        field("centre_m", &E::centre_m, units::metre, between(0.0, 0.1),
-              "Of the centre of mass of each link, along each axis."),
-        field("friction", &E::friction, units::none, between(0.0, 1.0),
-              "Share of each joint's Coulomb and viscous friction."),
-        field("torque_constant", &E::torque_constant, units::none, between(0.0, 0.5),
-              "Share by which each motor gives another torque than its drive assumes."),
-        field("payload_kg", &E::payload_kg, units::kilogram, between(0.0, 10.0),
-              "Mass at each tool: the arm has it and no model does, or, below zero, the models have it alone.")};
+    return List{field("mass", &E::mass, units::none, between(0.0, 0.5),
+                      "Largest error of the mass and the inertia of each link, as a share."),
+                field("centre_m", &E::centre_m, units::metre, between(0.0, 0.1),
+                      "Largest error of the centre of mass of each link, along each axis."),
+                field("friction", &E::friction, units::none, between(0.0, 1.0),
+                      "Largest error of each joint's Coulomb and viscous friction, as a share."),
+                field("torque_constant", &E::torque_constant, units::none, between(0.0, 0.5),
+                      "Largest error of each motor's torque constant in its drive, as a share."),
+                field("payload_kg", &E::payload_kg, units::kilogram, between(0.0, 10.0),
+                      "Mass at each tool that the arm has and the models lack; if negative, the models have it and the "
+                      "arm lacks it.")};
   }
   [[nodiscard]] bool any() const noexcept {
     return mass > 0.0 || centre_m > 0.0 || friction > 0.0 || torque_constant > 0.0 || payload_kg > 0.0;
@@ -143,30 +143,30 @@ struct ArmTappingTask {
   ArmModelErrors errors;
   static constexpr auto fields() {
     using T = ArmTappingTask;
-    return List{
-        field("kind", &T::kind, "Which experiment this is."),
-        field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
-        field("seed", &T::seed, non_negative, "Seed that draws the ensemble."),
-        field("pose", &T::pose, between(0, 1000),
-              "Where both arms begin: 0 at start_rad of each joint, and others drawn within 0.6 rad of it by this "
-              "number, "
-              "no nearer to a singular pose than three quarters of it."),
-        field("direction", &T::direction, "Direction of the surface to which the operator moves."),
-        field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
-              "Slowest approach: intended speed at the surface."),
-        field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
-              "Fastest approach."),
-        field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
-              "Smallest depth: how far beyond the surface the operator aims."),
-        field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
-        field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
-              "How long a tap is observed from first touch, while the operator keeps pressing."),
-        field("hold_s", &T::hold_s, units::second, between(1.0, 60.0),
-              "How long the operator holds still in the air, for the force on the hand and the drift at rest."),
-        field("model_error", &T::model_error, units::none, between(0.0, 0.5),
-              "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
-              "friction of each joint, mass, stiffness and damping of the hand) evenly from minus to plus this share."),
-        field("errors", &T::errors, "Errors of everything else that the sites compute with, drawn for each tap.")};
+    return List{field("kind", &T::kind, "Kind of the experiment."),
+                field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
+                field("seed", &T::seed, non_negative, "Seed from which the ensemble is drawn."),
+                field("pose", &T::pose, between(0, 1000),
+                      "Initial pose of both arms. 0: start_rad of each joint. Other numbers: seed of a pose drawn "
+                      "within 0.6 rad of start_rad, at least three quarters as far from a singular pose."),
+                field("direction", &T::direction, "Direction of the surface to which the operator moves."),
+                field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+                      "Slowest approach: intended speed at the surface."),
+                field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+                      "Fastest approach."),
+                field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
+                      "Smallest depth: how far beyond the surface the operator aims."),
+                field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
+                field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
+                      "Time for which a tap is observed from the first touch, while the operator keeps pressing."),
+                field("hold_s", &T::hold_s, units::second, between(1.0, 60.0),
+                      "Time for which the operator holds still in the air, to measure the force on the hand and the "
+                      "drift at rest."),
+                field("model_error", &T::model_error, units::none, between(0.0, 0.5),
+                      "Largest error of the model of induced motion, as a share: mass and inertia of each link, "
+                      "armature and friction of each joint, mass, stiffness and damping of the hand. Each tap draws "
+                      "them uniformly from minus to plus this share."),
+                field("errors", &T::errors, "Errors of the sites' other parameters, drawn for each tap.")};
   }
 };
 
@@ -182,10 +182,10 @@ struct ArmTappingParams : station::ArmTeleoperatorParams {
                 at<0>(sites),
                 field("operator", &P::person, "The operator who holds the leader's tool."),
                 at<1>(sites),
-                field("wall", &P::wall, "What the follower's tool meets."),
+                field("wall", &P::wall, "The surface that the follower's tool touches."),
                 at<2>(sites),
                 at<3>(sites),
-                field("faults", &P::faults, "With tactus faults alone: how often each is tried, and what it may do.")};
+                field("faults", &P::faults, "Only with tactus faults: number of runs, and limits of the effects.")};
   }
 };
 

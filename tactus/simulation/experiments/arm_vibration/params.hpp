@@ -34,19 +34,18 @@ struct ArmVibrationTask {
   static constexpr auto fields() {
     using T = ArmVibrationTask;
     return List{
-        field("kind", &T::kind, "Which experiment this is."),
-        field("joint", &T::joint, between(1, 8), "The joint that is looked at and that has the causes below."),
-        field("held_by", &T::held_by, "Who holds the leader's tool."),
-        field(
-            "reach_m", &T::reach_m, units::metre, between(0.0, 0.5),
-            "The operator moves the tool so far within two seconds, in the direction in which the joint moves it, and "
-            "holds it there."),
+        field("kind", &T::kind, "Kind of the experiment."),
+        field("joint", &T::joint, between(1, 8), "The joint that is judged and that has the causes below."),
+        field("held_by", &T::held_by, "Whether the operator holds the leader's tool."),
+        field("reach_m", &T::reach_m, units::metre, between(0.0, 0.5),
+              "Distance by which the operator moves the tool within two seconds, in the direction in which the joint "
+              "moves it, and then holds it."),
         field("push_N", &T::push_N, units::newton, between(0.0, 100.0),
-              "Where nobody holds it, the largest force of a push on the leader's tool of 0.1 s in that direction."),
+              "If nobody holds the tool: largest force of a push of 0.1 s on the leader's tool in that direction."),
         field("duration_s", &T::duration_s, units::second, between(3.5, 60.0),
-              "How long the pair runs, with the reach or push at 0.5 s. The second from 1 s on is judged, and the "
-              "last."),
-        field("seed", &T::seed, non_negative, "Seed of lost frames and late control cycles.")};
+              "Duration of the run. The reach or push starts at 0.5 s. The second from 1 s on and the last second are "
+              "judged."),
+        field("seed", &T::seed, non_negative, "Seed from which lost frames and late control cycles are drawn.")};
   }
 };
 
@@ -63,15 +62,16 @@ struct VibrationCauses {
     using C = VibrationCauses;
     return List{
         field("play_rad", &C::play_rad, arm::units::radian, between(0.0, 0.1),
-              "Play between motor and link of the joint, from end to end, in both arms."),
+              "Backlash between motor and link of the joint, from end to end, in both arms."),
         field("flank_stiffness_N_m_per_rad", &C::flank_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
-              between(100.0, 1e5), "Of the transmission where the play ends."),
+              between(100.0, 1e5), "Stiffness of the transmission at the ends of the backlash."),
         field("flank_damping_N_m_s_per_rad", &C::flank_damping_N_m_s_per_rad,
-              arm::units::newton_metre_second_per_radian, between(0.0, 20.0), "Damping in parallel with it."),
+              arm::units::newton_metre_second_per_radian, between(0.0, 20.0),
+              "Damping in parallel with this stiffness."),
         field("velocity_scale", &C::velocity_scale, units::none, between(0.1, 10.0),
-              "The host's range of velocity (VMAX) over the drive's own, at the leader's joint."),
+              "The host's range of velocity (VMAX) divided by the drive's own, at the leader's joint."),
         field("friction_share", &C::friction_share, units::none, between(0.0, 2.0),
-              "Friction that all joints have over the value of their URDF: below 1 the feed-forward gives too much."),
+              "Friction of all joints divided by the value in their URDF; below 1 the feed-forward is too large."),
         field("lost_share", &C::lost_share, units::none, between(0.0, 0.98),
               "Share of the control cycles without a reply of the joint's drives, drawn for each arm."),
         field("outage_s", &C::outage_s, units::second, between(0.0, 1.0),
@@ -92,15 +92,15 @@ struct VibrationHost {
     return List{
         field("rate_Hz", &H::rate_Hz, units::hertz, between(20.0, 5000.0), "Control cycles per second of each loop."),
         field("answer_ticks", &H::answer_ticks, between(1, 200),
-              "Control cycles from a command to the cycle that uses its reply: 2 where the time to receive ends before "
-              "the "
-              "answers are there, 1 where a cycle waits for them, more where an adapter holds them back."),
+              "Control cycles from a command to the cycle that uses its reply: 1 if a cycle waits for the replies, 2 "
+              "if it ends before they arrive, more if an adapter delays them."),
         field("follower_phase", &H::follower_phase, units::none, between(0.0, 0.999),
-              "When the follower's loop runs, as a share of a control cycle after the leader's."),
+              "Delay of the follower's loop after the leader's, as a share of a control cycle."),
         field("exchange_phase", &H::exchange_phase, units::none, between(0.0, 0.999),
-              "The same of the loop that hands readings over; 0 for both is one clock, in which it comes first."),
+              "The same for the loop that transfers readings between the arms. If both are 0, all loops run on one "
+              "clock and this one runs first."),
         field("late_s", &H::late_s, units::second, between(0.0, 0.1),
-              "Each control cycle is late by up to so much, evenly: a kernel that keeps no time."),
+              "Largest lateness of a control cycle, drawn uniformly, as on a kernel without real-time scheduling."),
         field("plant_step_s", &H::plant_step_s, units::second, between(1e-5, 2e-4), "Step of the simulated arms.")};
   }
 };
@@ -114,11 +114,11 @@ struct ArmVibrationParams {
   arm_plants::ToolOperator::Params person;
   static constexpr auto fields() {
     using P = ArmVibrationParams;
-    return List{field("task", &P::task, "What happens."),
-                field("cause", &P::cause, "What may be wrong with the pair; as shipped nothing is."),
+    return List{field("task", &P::task, "The course of the run."),
+                field("cause", &P::cause, "Possible faults of the pair; by default it has no fault."),
                 field("host", &P::host, "The program that polls both arms."),
-                field("control", &P::control, "What it commands the drives of both arms."),
-                field("arm", &P::arm, "Leader and follower, which are alike."),
+                field("control", &P::control, "Commands to the drives of both arms."),
+                field("arm", &P::arm, "Leader and follower, which are identical."),
                 field("operator", &P::person, "The operator who holds the leader's tool.")};
   }
 };

@@ -18,18 +18,18 @@ struct ReleasedJoint {
   static constexpr auto fields() {
     using J = ReleasedJoint;
     namespace u = arm::units;
-    return List{
-        field("stiffness_N_m_per_rad", &J::stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"}, between(0.0, 500.0),
-              "Kp: the drive's pull to the other arm's position."),
-        field("damping_N_m_s_per_rad", &J::damping_N_m_s_per_rad, u::newton_metre_second_per_radian, between(0.0, 5.0),
-              "Kd: the same to its velocity."),
-        field("coulomb_N_m", &J::coulomb_N_m, u::newton_metre, between(0.0, 10.0),
-              "Fc: Coulomb friction that feed-forward overcomes."),
-        field("turn_s_per_rad", &J::turn_s_per_rad, Unit{"s/rad", "_s_per_rad"}, between(0.0, 1000.0),
-              "k: how steeply it turns round, as tanh(0.1 k v)."),
-        field("viscous_N_m_s_per_rad", &J::viscous_N_m_s_per_rad, u::newton_metre_second_per_radian, between(0.0, 10.0),
-              "Fv: viscous friction that it overcomes."),
-        field("offset_N_m", &J::offset_N_m, u::newton_metre, between(-10.0, 10.0), "Fo: added at rest and in motion.")};
+    return List{field("stiffness_N_m_per_rad", &J::stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+                      between(0.0, 500.0), "Kp: stiffness of the drive toward the other arm's position."),
+                field("damping_N_m_s_per_rad", &J::damping_N_m_s_per_rad, u::newton_metre_second_per_radian,
+                      between(0.0, 5.0), "Kd: damping of the drive relative to the other arm's velocity."),
+                field("coulomb_N_m", &J::coulomb_N_m, u::newton_metre, between(0.0, 10.0),
+                      "Fc: Coulomb friction that the feed-forward compensates."),
+                field("turn_s_per_rad", &J::turn_s_per_rad, Unit{"s/rad", "_s_per_rad"}, between(0.0, 1000.0),
+                      "k: steepness of its change of sign, tanh(0.1 k v)."),
+                field("viscous_N_m_s_per_rad", &J::viscous_N_m_s_per_rad, u::newton_metre_second_per_radian,
+                      between(0.0, 10.0), "Fv: viscous friction that the feed-forward compensates."),
+                field("offset_N_m", &J::offset_N_m, u::newton_metre, between(-10.0, 10.0),
+                      "Fo: constant torque, added at rest and in motion.")};
   }
 };
 
@@ -47,11 +47,13 @@ class ReleasedLaw {
     double friction_share = 1.0;
     static constexpr auto fields() {
       using P = Params;
-      return List{field("joints", &P::joints, "Gains and friction of each joint, as config/leader.yaml has them."),
-                  field("velocity_share", &P::velocity_share, tactus::units::none, between(0.0, 1.0),
-                        "Share of the other arm's velocity that a drive is asked for; 0 damps towards rest."),
-                  field("friction_share", &P::friction_share, tactus::units::none, between(0.0, 2.0),
-                        "Share of the friction's feed-forward that is given.")};
+      return List{
+          field("joints", &P::joints,
+                "Gains and friction of each joint, with the values of config/leader.yaml of openarm_teleop."),
+          field("velocity_share", &P::velocity_share, tactus::units::none, between(0.0, 1.0),
+                "Share of the other arm's velocity that is commanded to a drive; 0 damps toward zero velocity."),
+          field("friction_share", &P::friction_share, tactus::units::none, between(0.0, 2.0),
+                "Share of the feed-forward against friction that is commanded.")};
     }
   };
 

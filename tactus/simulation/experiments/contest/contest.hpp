@@ -24,13 +24,14 @@ struct GainSearch : TapSeries {
   double lowest_gain = 0.25;
   double highest_gain = 32.0;
   static constexpr auto fields() {
-    return joined(
-        List{field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
-                   "A second force limit, for a display that saturates less than `control.force_limit_N`."),
-             field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
-                   "Where the search for the largest gain begins."),
-             field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0), "Where it ends.")},
-        TapSeries::fields());
+    return joined(List{field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
+                             "A second force limit, greater than `control.force_limit_N`, so that the displayed force "
+                             "saturates less."),
+                       field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
+                             "Gain at which the search for the largest gain begins."),
+                       field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0),
+                             "Gain at which the search ends.")},
+                  TapSeries::fields());
   }
 };
 
@@ -40,7 +41,7 @@ Check check(const GainSearch& search);
 struct ContestTask : GainSearch {
   ContestKind kind = ContestKind::contest;
   static constexpr auto fields() {
-    return joined(List{field("kind", &ContestTask::kind, "Which experiment this is.")}, GainSearch::fields());
+    return joined(List{field("kind", &ContestTask::kind, "Kind of the experiment.")}, GainSearch::fields());
   }
 };
 

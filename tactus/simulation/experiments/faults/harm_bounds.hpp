@@ -17,17 +17,18 @@ struct HarmBounds {
   double release_s = 1.0;
   static constexpr auto fields() {
     return List{
-        field("given_J", &HarmBounds::given_J, units::joule, positive, "Energy that a motor may give."),
+        field("given_J", &HarmBounds::given_J, units::joule, positive, "Energy that a motor may deliver."),
         field("speed_m_per_s", &HarmBounds::speed_m_per_s, units::metre_per_second, positive,
               "Speed that handle and tool may reach."),
         field("strayed_m", &HarmBounds::strayed_m, units::metre, positive,
-              "How far they may go beyond the ends of the path on which the operator leads them."),
+              "Distance that handle and tool may move beyond the ends of the operator's path."),
         field("hand_force_N", &HarmBounds::hand_force_N, units::newton, positive, "Force between hand and handle."),
         field("tool_force_N", &HarmBounds::tool_force_N, units::newton, positive,
               "Force between the tool and what it touches."),
-        field("pressing_N", &HarmBounds::pressing_N, units::newton, positive, "Either of them where it lasts."),
+        field("pressing_N", &HarmBounds::pressing_N, units::newton, positive,
+              "Lasting force between hand and handle, or between the tool and what it touches."),
         field("release_s", &HarmBounds::release_s, units::second, positive,
-              "From the moment in which both sites are in hold or fault until the motors give no force.")};
+              "Time from the instant at which both sites are in hold or fault until the motors apply no force.")};
   }
 };
 

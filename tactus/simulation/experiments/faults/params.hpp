@@ -25,20 +25,20 @@ struct FaultsTask {
   HarmBounds bounds;
   std::int64_t real_time_seeds = 30;
   static constexpr auto fields() {
-    return List{field("kind", &FaultsTask::kind, "Which experiment this is."),
-                field("seeds", &FaultsTask::seeds, between(1, 1000000), "Runs of each fault."),
-                field("seed", &FaultsTask::seed, non_negative, "Seed that draws every plan."),
-                field("only", &FaultsTask::only, "The id of one row, where not all are wanted; empty is all."),
+    return List{field("kind", &FaultsTask::kind, "Kind of the experiment."),
+                field("seeds", &FaultsTask::seeds, between(1, 1000000), "Number of runs of each fault."),
+                field("seed", &FaultsTask::seed, non_negative, "Seed from which every run is drawn."),
+                field("only", &FaultsTask::only, "Identifier of the only fault to run; empty: all."),
                 field("longest_cut_s", &FaultsTask::longest_cut_s, units::second, between(0.02, 600.0),
                       "Longest cut of the link."),
                 field("light_grip_fraction", &FaultsTask::light_grip_fraction, units::none, between(0.01, 1.0),
-                      "Damping of the light grip over that of the operator."),
+                      "Damping of the light grip divided by that of the operator."),
                 field("diverged_above_J", &FaultsTask::diverged_above_J, units::joule, positive,
-                      "A run in which the master's motor gave more energy than this diverged."),
-                field("bounds", &FaultsTask::bounds, "What a fault may do to people."),
+                      "A run diverged if the master's motor delivered more energy than this."),
+                field("bounds", &FaultsTask::bounds, "Limits of the effects of a fault on people."),
                 field("real_time_seeds", &FaultsTask::real_time_seeds, between(1, 1000),
-                      "Runs of each fault in real time, where that is asked for: the first of those in virtual "
-                      "time, no cut longer than a second.")};
+                      "Runs of each fault in real time, if requested: the first of the runs in virtual time, with no "
+                      "cut longer than a second.")};
   }
 };
 

@@ -36,21 +36,20 @@ struct ForceProfileParams {
   double decay_time_s = 0.012;
   static constexpr auto fields() {
     return List{
-        field(
-            "file", &ForceProfileParams::file,
-            "Recording to play: CSV with a header, or MATLAB v5. Empty: a synthetic transient. A relative path counts "
-            "from the current folder."),
+        field("file", &ForceProfileParams::file,
+              "Recording of the force: CSV with a header, or MATLAB v5. Empty: a synthetic transient. A relative path "
+              "counts from the current folder."),
         field("variable", &ForceProfileParams::variable,
               "CSV: the column's name. MATLAB: the variable, such as scope.signals(2).values."),
         field("column", &ForceProfileParams::column, between(1, 1e6), "MATLAB: the column of the variable, from 1."),
         field("sample_time_s", &ForceProfileParams::sample_time_s, units::second, between(0.0, 1.0),
               "Time between samples; 0 takes it from the file."),
         field("start_s", &ForceProfileParams::start_s, units::second, between(0.0, 1e6),
-              "Where the piece begins, from the recording's first sample."),
+              "Start of the part that is displayed, from the recording's first sample."),
         field("duration_s", &ForceProfileParams::duration_s, units::second, between(0.005, 10.0),
-              "Length of the piece, or of the synthetic transient."),
+              "Length of this part, or of the synthetic transient."),
         field("scale_N", &ForceProfileParams::scale_N, units::newton, between(-1e6, 1e6),
-              "Newtons per unit of the recording. 0 scales the largest magnitude of the piece to the force limit."),
+              "Newtons per unit of the recording; 0 scales the largest magnitude of this part to the force limit."),
         field("frequency_Hz", &ForceProfileParams::frequency_Hz, units::hertz, between(1.0, 1000.0),
               "Synthetic transient: frequency."),
         field("decay_time_s", &ForceProfileParams::decay_time_s, units::second, between(1e-4, 1.0),
@@ -67,16 +66,17 @@ struct ForceDisplayTask {
   double force_limit_N = 1.0;
   ModelMismatch mismatch{.mass = 1.2, .linkage_stiffness = 0.8, .operator_damping = 1.2};
   static constexpr auto fields() {
-    return List{field("kind", &ForceDisplayTask::kind, "Which experiment this is."),
-                field("seed", &ForceDisplayTask::seed, non_negative, "Seed that draws the tremor of each repeat."),
-                field("repeats", &ForceDisplayTask::repeats, between(1, 10000), "How often each case is played."),
-                field("speed_m_per_s", &ForceDisplayTask::speed_m_per_s, units::metre_per_second, between(-1.0, 1.0),
-                      "Constant speed of the hand."),
-                field("observation_s", &ForceDisplayTask::observation_s, units::second, between(0.02, 10.0),
-                      "How long the motion is judged from the start of the force."),
-                field("force_limit_N", &ForceDisplayTask::force_limit_N, units::newton, positive_up_to(100.0),
-                      "Full scale; the profile is played at a quarter, half and all of it."),
-                field("mismatch", &ForceDisplayTask::mismatch, "Errors of the mismatched model.")};
+    return List{
+        field("kind", &ForceDisplayTask::kind, "Kind of the experiment."),
+        field("seed", &ForceDisplayTask::seed, non_negative, "Seed from which the tremor of each repeat is drawn."),
+        field("repeats", &ForceDisplayTask::repeats, between(1, 10000), "Number of repeats of each case."),
+        field("speed_m_per_s", &ForceDisplayTask::speed_m_per_s, units::metre_per_second, between(-1.0, 1.0),
+              "Constant speed of the hand."),
+        field("observation_s", &ForceDisplayTask::observation_s, units::second, between(0.02, 10.0),
+              "Time for which the motion is analysed, from the start of the force."),
+        field("force_limit_N", &ForceDisplayTask::force_limit_N, units::newton, positive_up_to(100.0),
+              "Largest force; the profile is displayed at a quarter, at half and at all of it."),
+        field("mismatch", &ForceDisplayTask::mismatch, "Errors of the mismatched model.")};
   }
 };
 
@@ -87,8 +87,8 @@ struct ForceDisplayControl {
   control::MasterModel model;
   static constexpr auto fields() {
     return List{field("cancellation_model", &ForceDisplayControl::cancellation_model,
-                      "How much of master and hand the model distinguishes."),
-                field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
+                      "Parts of master and hand that the model distinguishes."),
+                field("cancellation_step", &ForceDisplayControl::cancellation_step, "Integration method of the model."),
                 field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }
 };
@@ -107,8 +107,8 @@ struct ForceDisplayParams {
                 field("servo", &ForceDisplayParams::servo, "The servo clock."),
                 field("plant", &ForceDisplayParams::plant, "The clock of the simulated plant."),
                 field("control", &ForceDisplayParams::control, "The model under test."),
-                field("profile", &ForceDisplayParams::profile, "The force that is played."),
-                field("task", &ForceDisplayParams::task, "How it is played and judged.")};
+                field("profile", &ForceDisplayParams::profile, "The displayed force."),
+                field("task", &ForceDisplayParams::task, "Display and analysis.")};
   }
 };
 

@@ -33,13 +33,13 @@ struct ForceEstimatorsTask {
   double press_depth_m = 0.01;
   static constexpr auto fields() {
     using Task = ForceEstimatorsTask;
-    return List{
-        field("kind", &Task::kind, "Which experiment this is."),
-        field("free_amplitude_m", &Task::free_amplitude_m, units::metre, between(1e-4, 0.5),
-              "Amplitude of the motion to and fro, which ends this far before the wall."),
-        field("free_frequency_Hz", &Task::free_frequency_Hz, units::hertz, between(0.1, 20.0), "Its frequency."),
-        field("press_depth_m", &Task::press_depth_m, units::metre, between(1e-4, 0.5),
-              "How far beyond the wall's surface the slave is commanded to go.")};
+    return List{field("kind", &Task::kind, "Kind of the experiment."),
+                field("free_amplitude_m", &Task::free_amplitude_m, units::metre, between(1e-4, 0.5),
+                      "Amplitude of the motion back and forth, and its smallest distance from the wall."),
+                field("free_frequency_Hz", &Task::free_frequency_Hz, units::hertz, between(0.1, 20.0),
+                      "Frequency of this motion."),
+                field("press_depth_m", &Task::press_depth_m, units::metre, between(1e-4, 0.5),
+                      "Depth beyond the wall's surface to which the slave is commanded.")};
   }
 };
 
@@ -64,7 +64,8 @@ struct ForceEstimatorsParams {
                 field("servo", &Params::servo, "The servo clock."),
                 field("plant", &Params::plant, "The clock of the simulated plant."),
                 field("inverse_model", &Params::inverse_model,
-                      "The inverse model; it runs without prediction and with each kind of it, whatever kind states."),
+                      "The inverse model. It runs without prediction and with each kind of prediction; the key kind "
+                      "has no effect."),
                 field("disturbance_observer", &Params::disturbance_observer, "The disturbance observer."),
                 field("momentum_observer", &Params::momentum_observer, "The momentum observer."),
                 field("kalman", &Params::kalman, "The Kalman filter."),

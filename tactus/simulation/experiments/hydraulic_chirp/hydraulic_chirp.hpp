@@ -28,11 +28,13 @@ struct HydraulicChirpTask {
     return List{
         field("kind", &P::kind, "The experiment."),
         field("duration_s", &P::duration_s, units::second, between(2.0, 200.0), "Length of the chirp."),
-        field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 50.0), "Its first frequency."),
-        field("end_frequency_Hz", &P::end_frequency_Hz, units::hertz, between(0.01, 50.0), "Its last frequency."),
-        field("amplitude_m", &P::amplitude_m, units::metre, between(1e-4, 0.09), "Of the wanted position."),
+        field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 50.0),
+              "First frequency of the chirp."),
+        field("end_frequency_Hz", &P::end_frequency_Hz, units::hertz, between(0.01, 50.0),
+              "Last frequency of the chirp."),
+        field("amplitude_m", &P::amplitude_m, units::metre, between(1e-4, 0.09), "Amplitude of the wanted position."),
         field("training_amplitude_m", &P::training_amplitude_m, units::metre, between(1e-4, 0.09),
-              "Sum of the amplitudes of the sines on which the model is identified.")};
+              "Sum of the amplitudes of the sines from which the model is identified.")};
   }
 };
 

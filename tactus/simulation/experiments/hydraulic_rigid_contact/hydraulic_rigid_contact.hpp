@@ -31,16 +31,17 @@ struct HydraulicRigidContactTask {
     using P = HydraulicRigidContactTask;
     return List{field("kind", &P::kind, "The experiment."),
                 field("first_press_m", &P::first_press_m, units::metre, between(1e-3, 0.1),
-                      "How far beyond the end stop the operator aims the first time."),
-                field("second_press_m", &P::second_press_m, units::metre, between(1e-3, 0.1), "And the second time."),
+                      "Distance beyond the end stop at which the operator aims the first time."),
+                field("second_press_m", &P::second_press_m, units::metre, between(1e-3, 0.1),
+                      "Distance beyond the end stop at which the operator aims the second time."),
                 field("force_division", &P::force_division, units::none, between(1.0, 1e5),
-                      "Force at the slave over force at the master."),
+                      "Force at the slave divided by force at the master."),
                 field("blocks", &P::blocks, between(1, 4), "Prediction blocks of the variant with prediction."),
-                field("delay_s", &P::delay_s, units::second, between(0.0, 0.1), "Of the link, each way."),
+                field("delay_s", &P::delay_s, units::second, between(0.0, 0.1), "Delay of the link in each direction."),
                 field("pressure_filter_Hz", &P::pressure_filter_Hz, units::hertz, positive,
-                      "Low-pass, second order, of the force from the pressure sensors."),
+                      "Second-order low-pass on the force from the pressure sensors."),
                 field("training_amplitude_m", &P::training_amplitude_m, units::metre, between(1e-4, 0.09),
-                      "Sum of the amplitudes of the sines on which the model is identified.")};
+                      "Sum of the amplitudes of the sines from which the model is identified.")};
   }
 };
 
@@ -50,7 +51,7 @@ struct HydraulicMasterParams {
   mechanics::LinearSpring::Params hand{.stiffness_N_per_m = 800.0, .damping_N_s_per_m = 40.0};
   static constexpr auto fields() {
     using P = HydraulicMasterParams;
-    return List{field("mass_kg", &P::mass_kg, units::kilogram, positive, "Master and hand."),
+    return List{field("mass_kg", &P::mass_kg, units::kilogram, positive, "Mass of master and hand."),
                 field("hand", &P::hand, "The arm.")};
   }
 };

@@ -30,12 +30,15 @@ struct InverseModelChirpTask {
     return List{
         field("kind", &P::kind, "The experiment."),
         field("duration_s", &P::duration_s, units::second, between(1.0, 200.0), "Length of each trajectory."),
-        field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 100.0), "Chirp: first."),
-        field("end_frequency_Hz", &P::end_frequency_Hz, units::hertz, between(0.01, 100.0), "Chirp: last."),
-        field("amplitude_m", &P::amplitude_m, units::metre, positive_up_to(100.0), "Of the master's motion."),
-        field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(500.0, 20000.0), "Of the estimators."),
+        field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 100.0),
+              "First frequency of the trajectory chirp."),
+        field("end_frequency_Hz", &P::end_frequency_Hz, units::hertz, between(0.01, 100.0),
+              "Last frequency of the trajectory chirp."),
+        field("amplitude_m", &P::amplitude_m, units::metre, positive_up_to(100.0), "Amplitude of the master's motion."),
+        field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(500.0, 20000.0),
+              "Sample rate of the estimators."),
         field("fit_start_frequency_Hz", &P::fit_start_frequency_Hz, units::hertz, between(1.0, 200.0),
-              "Where the fit of the fourth-order model starts its poles.")};
+              "Initial frequency of the poles in the fit of the fourth-order model.")};
   }
 };
 

@@ -30,13 +30,14 @@ struct PredictionBlockTask {
   double tolerance = 0.1;
   static constexpr auto fields() {
     using P = PredictionBlockTask;
-    return List{
-        field("kind", &P::kind, "The experiment."),
-        field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(100.0, 1e5), "At which the predictors run."),
-        field("lag_s", &P::lag_s, units::second, between(1e-3, 1.0),
-              "Time constant of the first-order lag whose step response is predicted."),
-        field("tolerance", &P::tolerance, units::none, between(1e-4, 0.5),
-              "The usable band ends where a predictor differs from the ideal one by this share of the signal.")};
+    return List{field("kind", &P::kind, "The experiment."),
+                field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(100.0, 1e5),
+                      "Rate at which the predictors run."),
+                field("lag_s", &P::lag_s, units::second, between(1e-3, 1.0),
+                      "Time constant of the first-order lag whose step response is predicted."),
+                field("tolerance", &P::tolerance, units::none, between(1e-4, 0.5),
+                      "Difference from the ideal predictor, as a share of the signal, at which the usable band of a "
+                      "predictor ends.")};
   }
 };
 
@@ -46,10 +47,11 @@ struct PredictionBlockParams {
   signal::PolynomialPredictor::Params polynomial;
   signal::KalmanPredictor::Params kalman;
   static constexpr auto fields() {
-    return List{field("task", &PredictionBlockParams::task, "What is shown."),
-                field("block", &PredictionBlockParams::block, "Each of the blocks."),
-                field("polynomial", &PredictionBlockParams::polynomial, "Their rival that extrapolates."),
-                field("kalman", &PredictionBlockParams::kalman, "Their rival that filters.")};
+    return List{field("task", &PredictionBlockParams::task, "The comparison."),
+                field("block", &PredictionBlockParams::block, "Parameters of each block."),
+                field("polynomial", &PredictionBlockParams::polynomial,
+                      "Extrapolation of a polynomial, a rival of the blocks."),
+                field("kalman", &PredictionBlockParams::kalman, "Kalman filter, a rival of the blocks.")};
   }
 };
 

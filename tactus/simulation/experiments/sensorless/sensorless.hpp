@@ -18,7 +18,7 @@ constexpr auto enumerators(SensorlessKind) { return std::array{Enumerator{Sensor
 struct SensorlessTask : GainSearch {
   SensorlessKind kind = SensorlessKind::sensorless;
   static constexpr auto fields() {
-    return joined(List{field("kind", &SensorlessTask::kind, "Which experiment this is.")}, GainSearch::fields());
+    return joined(List{field("kind", &SensorlessTask::kind, "Kind of the experiment.")}, GainSearch::fields());
   }
 };
 

@@ -28,22 +28,21 @@ struct TapSeries {
   double model_error = 0.0;
   ModelMismatch mismatch;
   static constexpr auto fields() {
-    return List{
-        field("taps", &TapSeries::taps, between(1, 100000), "Number of taps in the ensemble."),
-        field("seed", &TapSeries::seed, non_negative, "Seed that draws the ensemble and the noise."),
-        field("slowest_m_per_s", &TapSeries::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
-              "Slowest approach: intended speed at the wall."),
-        field("fastest_m_per_s", &TapSeries::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
-              "Fastest approach."),
-        field("shallowest_m", &TapSeries::shallowest_m, units::metre, between(1e-4, 0.1),
-              "Smallest depth: how far beyond the wall the operator aims."),
-        field("deepest_m", &TapSeries::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
-        field("observation_s", &TapSeries::observation_s, units::second, between(0.15, 10.0),
-              "How long a tap is observed from first touch, while the operator keeps pressing."),
-        field("model_error", &TapSeries::model_error, units::none, between(0.0, 0.5),
-              "Every tap draws the errors of the model's masses, linkage stiffness and operator damping evenly from "
-              "minus to plus this share."),
-        field("mismatch", &TapSeries::mismatch, "Fixed errors of the model, on top of what is drawn.")};
+    return List{field("taps", &TapSeries::taps, between(1, 100000), "Number of taps in the ensemble."),
+                field("seed", &TapSeries::seed, non_negative, "Seed from which the ensemble and the noise are drawn."),
+                field("slowest_m_per_s", &TapSeries::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+                      "Slowest approach: intended speed at the wall."),
+                field("fastest_m_per_s", &TapSeries::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+                      "Fastest approach."),
+                field("shallowest_m", &TapSeries::shallowest_m, units::metre, between(1e-4, 0.1),
+                      "Smallest depth: how far beyond the wall the operator aims."),
+                field("deepest_m", &TapSeries::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
+                field("observation_s", &TapSeries::observation_s, units::second, between(0.15, 10.0),
+                      "Time for which a tap is observed from the first touch, while the operator keeps pressing."),
+                field("model_error", &TapSeries::model_error, units::none, between(0.0, 0.5),
+                      "Largest error of the model's masses, linkage stiffness and operator damping, as a share; each "
+                      "tap draws them uniformly from minus to plus this share."),
+                field("mismatch", &TapSeries::mismatch, "Fixed errors of the model, in addition to the drawn ones.")};
   }
 };
 
@@ -55,10 +54,10 @@ struct TappingTask : TapSeries {
   TappingKind kind = TappingKind::tapping;
   bool supervised = true;
   static constexpr auto fields() {
-    return joined(List{field("kind", &TappingTask::kind, "Which experiment this is."),
+    return joined(List{field("kind", &TappingTask::kind, "Kind of the experiment."),
                        field("supervised", &TappingTask::supervised,
-                             "Sites that are armed before each tap and watched, as on a machine; false: at work from "
-                             "the first control cycle on, as in the papers.")},
+                             "true: the sites are supervised and armed before each tap, as on hardware; false: they "
+                             "are active from the first control cycle on, as in the papers.")},
                   TapSeries::fields());
   }
 };
