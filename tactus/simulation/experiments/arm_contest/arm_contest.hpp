@@ -45,7 +45,8 @@ struct ArmContestTask {
         field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0), "Smallest gain of the search."),
         field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0), "Largest gain of the search."),
         field("bare", &T::bare,
-              "File that removes the recommended settings from a pair; the other methods start from the result.")};
+              "File that removes the recommended settings from a pair, for all methods whose name does not start with "
+              "`recommended`.")};
   }
 };
 
