@@ -38,8 +38,8 @@ struct ArmVibrationTask {
         field("joint", &T::joint, between(1, 8), "The joint that is judged, and that the faults under [cause] affect."),
         field("held_by", &T::held_by, "Whether the operator holds the leader's tool."),
         field("reach_m", &T::reach_m, units::metre, between(0.0, 0.5),
-              "The operator moves the tool by this distance within two seconds, in the direction in which the joint moves "
-              "it, and then holds the tool still."),
+              "The operator moves the tool by this distance within two seconds, in the direction in which the joint "
+              "moves it, and then holds the tool still."),
         field("push_N", &T::push_N, units::newton, between(0.0, 100.0),
               "If nobody holds the tool: largest force of a push of 0.1 s on the leader's tool in that direction."),
         field("duration_s", &T::duration_s, units::second, between(3.5, 60.0),
