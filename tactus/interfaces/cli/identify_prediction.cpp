@@ -152,8 +152,10 @@ Check identify(const PredictionOptions& options, const std::string& command) {
 void add_identify_prediction(CLI::App& identify_command, const std::string& name, const std::string& command,
                              int& status) {
   auto options = std::make_shared<PredictionOptions>();
-  CLI::App* verb = identify_command.add_subcommand(
-      "prediction", "Compute the time constant of prediction blocks from the model, and fit it to a motion");
+  CLI::App* verb = identify_command.add_subcommand("prediction",
+                                                   "Compute the time constant of a force estimator's prediction blocks "
+                                                   "from its model, and fit the time constant to a "
+                                                   "motion");
   verb->add_option("EXPERIMENT", options->experiment, "Experiment file (TOML) of the kind inverse-model-chirp")
       ->required();
   add_set_option(*verb, options->set);

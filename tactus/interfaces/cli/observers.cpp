@@ -48,8 +48,9 @@ void add_observer_options(CLI::App& verb, ObserverOptions& options) {
       ->expected(0, 1)
       ->group(group);
   CLI::Option* const ros2 = verb.add_flag("--ros2", options.ros2,
-                                          "Publish to ROS 2 nodes under CRTK names; without --realtime and --site, "
-                                          "operator/servo_jp can move the hand")
+                                          "Publish to ROS 2 nodes under the names of CRTK (Collaborative Robotics "
+                                          "Toolkit); without --realtime and --site, messages on operator/servo_jp can "
+                                          "move the simulated hand")
                                 ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")

@@ -83,7 +83,8 @@ void add_output_options(CLI::App& verb, OutputOptions& options, const std::strin
 
 void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes) {
   verb.add_option("--log-limit", most_bytes,
-                  "Size limit of the log on disk, such as 500MB or 2GB; the oldest of its four parts is deleted")
+                  "Size limit of the log on disk, such as 500MB or 2GB; by default unlimited. The log has up to four "
+                  "parts. When the newest part is full, the oldest is deleted")
       ->type_name("SIZE")
       ->transform(CLI::AsSizeValue(false))
       ->check([](const std::string& bytes) -> std::string {

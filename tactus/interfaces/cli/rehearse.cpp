@@ -118,8 +118,8 @@ void add_rehearse(CLI::App& app, const std::string& command, int& status) {
       ->allow_extra_args(false);
   constexpr double latest_s = 1000.0;
   verb->add_option("--led", options->led,
-                   "Reach in rad to which a simulated hand moves each joint of an emulated leader arm back and forth, "
-                   "and the time in s after gravity compensation is on; 0.3,10 by default")
+                   "Motion of a simulated hand that holds an emulated leader arm: it moves each joint back and forth "
+                   "by REACH, in rad, and starts SECONDS after gravity compensation is on; 0.3,10 by default")
       ->type_name("REACH,SECONDS")
       ->delimiter(',')
       ->expected(2)

@@ -225,8 +225,9 @@ constexpr const char* supervised_group = "With supervision, in real time";
 
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
   verb.add_option("--device", options.devices,
-                  "Rig file, or one of its pairs: both leader and follower are driven, or with --site one of them. Or "
-                  "the name of a device that the program provides, for both sites or for one")
+                  "Rig file, or one of its pairs, of which the command drives both leader and follower, or with "
+                  "--site one of them. You can also write the name of a device that the program provides, for both "
+                  "sites or for one")
       ->type_name("[SITE=]NAME|RIG.toml[:PAIR]")
       ->group(supervised_group)
       ->allow_extra_args(false);
@@ -246,7 +247,8 @@ void add_site_options(CLI::App& verb, SupervisedOptions& options) {
   verb.add_flag("--unencrypted", options.unencrypted, "Send plain text, on the loopback of this host only")
       ->group(supervised_group);
   verb.add_flag("--arm", options.arm,
-                "At the master: arm once, when packets of the slave have arrived for the watchdog's timeout")
+                "At the master: arm once, after packets of the slave have arrived for the duration of the "
+                "watchdog's timeout")
       ->group(supervised_group);
   add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
 }

@@ -73,8 +73,8 @@ struct ArmParams {
                       "URDF of the arm, z up; a relative path counts from the experiment's file. Its effort limits "
                       "limit the motors; its damping and friction act at the joints."),
                 field("tip", &A::tip,
-                      "Name of the last link of the arm, if the URDF branches or continues, for instance with the "
-                      "fingers of a gripper, which then count as fixed. Empty: the end of the only chain."),
+                      "Name of the last link of the arm. Needed if the URDF has branches, or links after it such as "
+                      "the fingers of a gripper; these then count as fixed. Empty: the end of the only chain."),
                 field("tool", &A::tool, "The point that the operator holds, or that touches the surface."),
                 field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
                       between(0.0, 1e6), "Stiffness of the transmission between motor and link; 0 is rigid."),

@@ -46,7 +46,8 @@ class ToolOperator {
     static constexpr auto fields() {
       return List{field("hand", &Params::hand, "The passive impedance of hand and arm at the tool."),
                   field("correction_gain_per_s", &Params::correction_gain_per_s, units::per_second, between(0.0, 8.0),
-                        "Speed of the slow correction per metre of error; 0 switches it off."),
+                        "Speed per metre of error at which the operator slowly corrects the tool's position; 0: no "
+                        "correction."),
                   field("correction_bandwidth_Hz", &Params::correction_bandwidth_Hz, units::hertz, between(0.1, 20.0),
                         "Corner of the first-order low-pass on the error that is corrected."),
                   field("reaction_time_s", &Params::reaction_time_s, units::second, between(0.0, 0.4),

@@ -35,16 +35,16 @@ struct ArmVibrationTask {
     using T = ArmVibrationTask;
     return List{
         field("kind", &T::kind, "Kind of the experiment."),
-        field("joint", &T::joint, between(1, 8), "The joint that is judged and that has the causes below."),
+        field("joint", &T::joint, between(1, 8), "The joint that is judged, and that the faults under [cause] affect."),
         field("held_by", &T::held_by, "Whether the operator holds the leader's tool."),
         field("reach_m", &T::reach_m, units::metre, between(0.0, 0.5),
-              "Distance by which the operator moves the tool within two seconds, in the direction in which the joint "
-              "moves it, and then holds it."),
+              "The operator moves the tool by this distance within two seconds, in the direction in which the joint "
+              "moves it, and then holds the tool still."),
         field("push_N", &T::push_N, units::newton, between(0.0, 100.0),
               "If nobody holds the tool: largest force of a push of 0.1 s on the leader's tool in that direction."),
         field("duration_s", &T::duration_s, units::second, between(3.5, 60.0),
-              "Duration of the run. The reach or push starts at 0.5 s. The second from 1 s on and the last second are "
-              "judged."),
+              "Duration of the run. The reach or push starts at 0.5 s. The interval from 1 s to 2 s and the last "
+              "second are judged."),
         field("seed", &T::seed, non_negative, "Seed from which lost frames and late control cycles are drawn.")};
   }
 };

@@ -25,7 +25,7 @@ struct ReleasedJoint {
                 field("coulomb_N_m", &J::coulomb_N_m, u::newton_metre, between(0.0, 10.0),
                       "Fc: Coulomb friction that the feed-forward compensates."),
                 field("turn_s_per_rad", &J::turn_s_per_rad, Unit{"s/rad", "_s_per_rad"}, between(0.0, 1000.0),
-                      "k: steepness of its change of sign, tanh(0.1 k v)."),
+                      "k: steepness with which this friction changes its sign at zero velocity, tanh(0.1 k v)."),
                 field("viscous_N_m_s_per_rad", &J::viscous_N_m_s_per_rad, u::newton_metre_second_per_radian,
                       between(0.0, 10.0), "Fv: viscous friction that the feed-forward compensates."),
                 field("offset_N_m", &J::offset_N_m, u::newton_metre, between(-10.0, 10.0),
