@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-/// The keys of its own, the group `[control.soft_limit]` of a file.
+/// The keys of this class: the group `[control.soft_limit]` of a file.
 struct SoftLimitParams {
   double linear_fraction = 0.5;
   static constexpr auto fields() {
@@ -17,15 +17,15 @@ struct SoftLimitParams {
   }
 };
 
-/// A master site that displays force as position-force control does, but bends it into its limit instead of cutting it
-/// off there. Of the tip force F, with F_max = force_limit_N / force_gain where the display saturates and F_l the share
-/// `linear_fraction` of it, the site sees
+/// A master site that displays force as position-force control does, but lets the force approach its limit smoothly
+/// instead of clipping it. The display saturates at the tip force F_max = force_limit_N / force_gain. F_l is the share
+/// `linear_fraction` of F_max. In place of the tip force F, the position-force site receives
 ///
 ///     F                                                       up to F_l
 ///     sign(F)·(F_l + (F_max − F_l)·tanh((|F| − F_l) / (F_max − F_l)))   above
 ///
 /// Value and slope are continuous, and the slope falls from one to zero, so the loop's gain falls as the force grows.
-/// Everything else (gain, cancellation, command) is the library's own site, to which this one hands on.
+/// The library's position-force site does everything else: gain, cancellation and command.
 class SoftLimitMaster {
  public:
   struct Params {
@@ -53,9 +53,9 @@ class SoftLimitMaster {
     bent.arrival.message.force_N = bend(input.arrival.message.force_N);
     return site_.respond(bent);
   }
-  /// The force that the safety gate let through: the model of cancellation lives on it. Real-time safe.
+  /// Passes on the force after the safety gate, which drives the model of cancellation. Real-time safe.
   void applied(double motor_force_N) noexcept { site_.applied(motor_force_N); }
-  /// Both at once, for use without a gate.
+  /// `respond` and `applied` in one call, for use without a gate.
   Output step(const Input& input) noexcept {
     const Output output = respond(input);
     applied(output.motor_force_N);

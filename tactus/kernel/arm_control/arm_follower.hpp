@@ -81,7 +81,7 @@ class ArmFollower {
                 "newtons at the handle for one newton at the tool at a force_gain of 1."),
           field("gains", &P::gains, "Gains of the drives."),
           field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
-                "Factor on the stiffness of the drives in gains; their damping stays."),
+                "Factor on every stiffness in gains; the damping in gains stays as it is."),
           field("tool_stiffness_limit_N_per_m", &P::tool_stiffness_limit_N_per_m, tactus::units::newton_per_metre,
                 between(0.0, 1e5),
                 "Largest stiffness at the tool, in any direction, that the drives may cause; 0: no limit."),

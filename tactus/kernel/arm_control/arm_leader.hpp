@@ -106,8 +106,8 @@ class ArmLeader {
                 tactus::units::newton_second_per_metre, between(0.0, 1e4),
                 "Largest damping at the tool, in any direction, that drive_damping may cause; 0: no limit."),
           field("damping_washout_Hz", &P::damping_washout_Hz, tactus::units::hertz, between(0.0, 50.0),
-                "In free motion the leader's dampers resist only motion above this frequency; in contact, along its "
-                "normal, all motion. 0: always all motion."),
+                "In free motion the leader's dampers resist only motion above this frequency. In contact they resist "
+                "all motion along the contact's normal. 0: they always resist all motion."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the displayed torque; 0: no filter."),
           field("force_low_pass_each", &P::force_low_pass_each, "Separate corner frequencies of single joints."),

@@ -23,7 +23,7 @@ struct FourChannelJoint {
                 field("damping_N_m_s_per_rad", &J::damping_N_m_s_per_rad, u::newton_metre_second_per_radian,
                       between(0.0, 50.0), "Kd of the drive, toward the other arm's velocity."),
                 field("observer_rad_per_s", &J::observer_rad_per_s, u::radian_per_second, positive_up_to(1000.0),
-                      "Corner frequency of both observers."),
+                      "Corner frequency of the disturbance observer and of the reaction-force observer."),
                 field("force_share", &J::force_share, tactus::units::none, between(0.0, 10.0),
                       "Kf: gain on the sum of both sides' torques."),
                 field("disturbance_limit_N_m", &J::disturbance_limit_N_m, u::newton_metre, between(0.0, 100.0),
@@ -59,9 +59,9 @@ class FourChannel {
     static constexpr auto fields() {
       return List{field("joints", &Params::joints, "Gains of each joint, of both arms."),
                   field("alpha", &Params::alpha, tactus::units::none, positive_up_to(100.0),
-                        "Weight of the leader's inertia in the share of force."),
+                        "Weight of the leader's inertia in the factors by which both arms scale force_share."),
                   field("beta", &Params::beta, tactus::units::none, positive_up_to(100.0),
-                        "Weight of the follower's inertia in the share of force.")};
+                        "Weight of the follower's inertia in the factors by which both arms scale force_share.")};
     }
   };
   enum class Side { leader, follower };

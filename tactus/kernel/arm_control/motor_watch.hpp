@@ -61,8 +61,8 @@ class MotorWatch {
       using P = Params;
       return List{
           field("deviations", &P::deviations, tactus::units::none, between(0.0, 100.0),
-                "Difference between the reported torque and the one seen in the motion, in standard deviations, that "
-                "is a fault; 0 switches the check off."),
+                "Difference between the reported torque and the torque seen in the motion, in standard deviations, "
+                "above which the motor is at fault; 0 switches the check off."),
           field("contact_force_N", &P::contact_force_N, tactus::units::newton, positive_up_to(1000.0),
                 "Standard deviation of the contact force at the tool, in each direction."),
           field("contact_moment_N_m", &P::contact_moment_N_m, arm::units::newton_metre, positive_up_to(100.0),
@@ -70,7 +70,8 @@ class MotorWatch {
           field("model_share", &P::model_share, tactus::units::none, positive_up_to(1.0),
                 "Standard deviation of the model's gravity and inertial torque, as a share of that torque."),
           field("least_N_m", &P::least_N_m, arm::units::newton_metre, positive_up_to(100.0),
-                "Standard deviation of each joint's torque in addition to the others and to its Coulomb friction."),
+                "Constant part of the standard deviation of each joint's torque; its Coulomb friction and model_share "
+                "add to it."),
           field("report_share", &P::report_share, tactus::units::none, positive_up_to(1.0),
                 "Share of a joint's torque limit by which commanded and reported torque may differ."),
           field("lasting_s", &P::lasting_s, tactus::units::second, positive_up_to(1.0),

@@ -36,8 +36,8 @@ class ReversalCheck {
                   field("gained_m_per_s", &Params::gained_m_per_s, units::metre_per_second, positive_up_to(100.0),
                         "Gain of speed against this force that is a fault."),
                   field("lasting_s", &Params::lasting_s, units::second, positive_up_to(1.0),
-                        "Time for which the force must have opposed the motion before; longer than the delays of "
-                        "amplifier and sensors.")};
+                        "Time for which the force must have opposed the motion before a gain of speed counts; longer "
+                        "than the delays of amplifier and sensors.")};
     }
   };
   struct Input {

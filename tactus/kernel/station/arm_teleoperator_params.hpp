@@ -134,7 +134,8 @@ struct ProbeTorque {
   double torque_N_m = 0.0;
   static constexpr auto fields() {
     return List{field("torque_N_m", &ProbeTorque::torque_N_m, arm::units::newton_metre, between(0.0, 100.0),
-                      "Peak of the torque that tests its motor, above its friction; 0: that of supervision.probe.")};
+                      "Peak of the torque that tests the joint's motor; above the friction of the joint. 0: that of "
+                      "supervision.probe.")};
   }
 };
 
@@ -144,7 +145,7 @@ struct GripperParams : arm_control::DriveGains {
   static constexpr auto fields() {
     return joined(arm_control::DriveGains::fields(),
                   List{field("leader_share", &GripperParams::leader_share, units::none, between(0.0, 1.0),
-                             "The leader's gains divided by the follower's, which are those above.")});
+                             "Gains of the leader's drive divided by the gains above, which are the follower's.")});
   }
 };
 

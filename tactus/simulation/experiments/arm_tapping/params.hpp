@@ -118,8 +118,8 @@ struct ArmModelErrors {
                 field("torque_constant", &E::torque_constant, units::none, between(0.0, 0.5),
                       "Largest error of each motor's torque constant in its drive, as a share."),
                 field("payload_kg", &E::payload_kg, units::kilogram, between(0.0, 10.0),
-                      "Mass at each tool that the arm has and the models lack; if negative, the models have it and the "
-                      "arm lacks it.")};
+                      "Largest difference between the mass at each tool and the mass there in the models. Each tap "
+                      "draws it from minus to plus this value.")};
   }
   [[nodiscard]] bool any() const noexcept {
     return mass > 0.0 || centre_m > 0.0 || friction > 0.0 || torque_constant > 0.0 || payload_kg > 0.0;
@@ -148,7 +148,8 @@ struct ArmTappingTask {
                 field("seed", &T::seed, non_negative, "Seed from which the ensemble is drawn."),
                 field("pose", &T::pose, between(0, 1000),
                       "Initial pose of both arms. 0: start_rad of each joint. Other numbers: seed of a pose drawn "
-                      "within 0.6 rad of start_rad, at least three quarters as far from a singular pose."),
+                      "within 0.6 rad of start_rad, whose distance from a singular pose is at least three quarters of "
+                      "that of start_rad."),
                 field("direction", &T::direction, "Direction of the surface to which the operator moves."),
                 field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
                       "Slowest approach: intended speed at the surface."),

@@ -37,8 +37,8 @@ struct FaultsTask {
                       "A run diverged if the master's motor delivered more energy than this."),
                 field("bounds", &FaultsTask::bounds, "Limits of the effects of a fault on people."),
                 field("real_time_seeds", &FaultsTask::real_time_seeds, between(1, 1000),
-                      "Runs of each fault in real time, if requested: the first of the runs in virtual time, with no "
-                      "cut longer than a second.")};
+                      "Number of runs of each fault in real time, if requested. They repeat the first runs in virtual "
+                      "time, with no cut of the link longer than a second.")};
   }
 };
 
