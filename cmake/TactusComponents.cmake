@@ -11,7 +11,7 @@ set(TACTUS_ALL_COMPONENTS kernel data runtime hardware identification simulation
 set(TACTUS_COMPONENT_kernel core signal mechanics arm control arm_control station)
 set(TACTUS_COMPONENT_data recording configuration report urdf telemetry)
 set(TACTUS_COMPONENT_identification identification arm_identification diagnosis)
-set(TACTUS_COMPONENT_simulation arm_plants simulation experiments real_time)
+set(TACTUS_COMPONENT_simulation arm_plants simulation tasks experiments real_time)
 set(TACTUS_COMPONENT_analysis stability arm_stability advice)
 set(TACTUS_COMPONENT_runtime link runtime ros2)
 set(TACTUS_COMPONENT_hardware wire emulation devices)
