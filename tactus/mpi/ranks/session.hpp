@@ -12,7 +12,7 @@
 /// which sleeps most of the time, exchanges messages.
 namespace tactus::ranks {
 
-/// How long a rank may be silent before the job ends. A rank sends a message at least every half second, also while it
+/// How long a rank may send no message before the job ends. A rank sends a message at least every half second, also while it
 /// computes.
 inline constexpr double silence_limit_s = 6.0;
 
