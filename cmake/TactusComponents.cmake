@@ -6,16 +6,19 @@
 # The order is that of the layers: a module links and includes only modules that stand before it. The include-graph test
 # reads these lists.
 
-set(TACTUS_ALL_COMPONENTS kernel data runtime hardware identification simulation analysis interfaces)
+set(TACTUS_ALL_COMPONENTS kernel data runtime hardware identification simulation analysis interfaces mpi)
+# Built only if it is asked for, or its library is found.
+set(TACTUS_OPTIONAL_COMPONENTS mpi)
 
 set(TACTUS_COMPONENT_kernel core signal mechanics arm control arm_control station)
 set(TACTUS_COMPONENT_data recording configuration report urdf telemetry)
 set(TACTUS_COMPONENT_identification identification arm_identification diagnosis)
-set(TACTUS_COMPONENT_simulation arm_plants simulation experiments real_time)
+set(TACTUS_COMPONENT_simulation arm_plants simulation tasks experiments real_time)
 set(TACTUS_COMPONENT_analysis stability arm_stability advice)
 set(TACTUS_COMPONENT_runtime link runtime ros2)
 set(TACTUS_COMPONENT_hardware wire emulation devices)
 set(TACTUS_COMPONENT_interfaces live cli c_api)
+set(TACTUS_COMPONENT_mpi ranks)
 
 set(TACTUS_COMPONENT_kernel_NEEDS)
 set(TACTUS_COMPONENT_data_NEEDS kernel)
@@ -25,6 +28,7 @@ set(TACTUS_COMPONENT_analysis_NEEDS simulation)
 set(TACTUS_COMPONENT_runtime_NEEDS data)
 set(TACTUS_COMPONENT_hardware_NEEDS runtime)
 set(TACTUS_COMPONENT_interfaces_NEEDS analysis)
+set(TACTUS_COMPONENT_mpi_NEEDS interfaces)
 
 # Leaves in OUT where a module is, below tactus/. Four folders have a shorter name than their module.
 function(tactus_folder out module)

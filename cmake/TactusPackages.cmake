@@ -38,9 +38,12 @@ set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
 set(library_of_this_version "libtactus0 (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "${library_of_this_version}, libeigen3-dev, libmatio-dev, zlib1g-dev, libzstd-dev, libhdf5-dev, libtinyxml2-dev, libssl-dev, cyclonedds-dev, libmujoco-dev")
+if(TARGET tactus_ranks)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenmpi-dev")
+endif()
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), ${library_of_this_version}")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-numpy")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-pandas")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-pandas, python3-distributed")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "tactus-doc")
 foreach(component IN ITEMS PYTHON DOCUMENTATION)
   set(CPACK_DEBIAN_${component}_PACKAGE_ARCHITECTURE all)

@@ -30,6 +30,7 @@ from .devices import JointDevice, MotorCommand, MotorReading, register_device
 from .errors import Interrupted, JobError, ReleasedError, RequestError, TactusError
 from .logs import Log, Table, read_log
 from .results import Record
+from .sweeps import Sweep, SweepRun, sweep
 from .teleoperator import Joints, Report, Sample, State, Teleoperator
 
 __version__: str
@@ -51,6 +52,8 @@ __all__ = [
     "Result",
     "Sample",
     "State",
+    "Sweep",
+    "SweepRun",
     "Table",
     "TactusError",
     "Teleoperator",
@@ -68,6 +71,7 @@ __all__ = [
     "run",
     "schema",
     "stability",
+    "sweep",
 ]
 
 

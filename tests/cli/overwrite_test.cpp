@@ -139,7 +139,7 @@ TEST_F(Overwrite, AFolderThatIsNotForResultsIsRefused) {
   EXPECT_EQ(content("empty/notes.txt"), "mine");
   // What a killed map leaves is gone on with.
   make_folder("killed");
-  write("killed/blocks-0.partial", "");
+  write("killed/tasks.partial", "");
   EXPECT_EQ(tactus({"run", file, "--out", "killed"}).status, 0);
 }
 

@@ -38,7 +38,7 @@ TEST_F(StabilityMap, LeavesTableHdf5PictureReportAndResults) {
   for (const std::string file : {"map.csv", "map.h5", "map.svg", "report.html", "results.json"}) {
     EXPECT_TRUE(left("results/" + file)) << file;
   }
-  EXPECT_FALSE(left("results/blocks-0.partial"));
+  EXPECT_FALSE(left("results/tasks.partial"));
   const Json told = Json::parse(outcome.out);
   EXPECT_EQ(told, Json::parse(content("results/results.json")));
   EXPECT_EQ(told["points"], 120);

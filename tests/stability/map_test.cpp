@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/map.hpp>
-#include <tactus/analysis/stability/map_file.hpp>
+#include <tactus/analysis/stability/map_block.hpp>
 #include <tactus/analysis/stability/map_hdf5.hpp>
+#include <tactus/simulation/tasks/engine.hpp>
+#include <tactus/simulation/tasks/work.hpp>
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
+#include <string_view>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <tests/scratch_path.hpp>
@@ -28,7 +30,7 @@ MapRequest small_map(const std::string& folder = {}) {
   request.base.control.cancellation = control::CancellationMode::off;
   request.axes = {*parse_axis("control.force_gain=0.5:30:30"),
                   *parse_axis("environment.stiffness_N_per_m=1e3:5e4:40[log]")};
-  request.folder = folder;
+  request.place.folder = folder;
   return request;
 }
 
@@ -67,73 +69,110 @@ TEST(Maps, AWrongAxisIsRefusedAndSaysWhatToWrite) {
 
 TEST(Maps, ThreadsDoNotChangeABit) {
   MapRequest request = small_map();
-  request.threads = 1;
+  tasks::Threads one_thread(1), three_threads(3);
+  request.place.engine = &one_thread;
   const std::string one = csv_of(request);
-  request.threads = 3;
+  request.place.engine = &three_threads;
   EXPECT_EQ(one, csv_of(request));
   EXPECT_NE(one.find("settled"), std::string::npos) << one.substr(0, 300);
 }
 
-TEST(Maps, AKilledMapGoesOnFromItsLastWholeBlockToTheSameResult) {
-  const std::string folder = scratch_path().string();
-  const std::string whole = csv_of(small_map());
-  std::filesystem::remove_all(folder);
-  MapRequest request = small_map(folder);
-  request.share = {.rank = 1, .ranks = 3};  // does block 1 of 0, 1, 2 and leaves
-  ASSERT_TRUE(run_map(request, [](double) {}));
-  const auto left = std::filesystem::path(folder) / "blocks-1.partial";
-  ASSERT_TRUE(std::filesystem::exists(left));
-  std::filesystem::rename(left, std::filesystem::path(folder) / "blocks-0.partial");
-  {
-    // What a process leaves that is killed within a write.
-    std::ofstream half(std::filesystem::path(folder) / "blocks-0.partial", std::ios::app | std::ios::binary);
-    half << std::string("\2\0\0\0\0\0\0\0\xb0\0\0\0\0\0\0\0half a block", 28);
+Error failure(std::string message) {
+  return {.code = ErrorCode::failed, .parameter = {}, .message = std::move(message), .place = {}};
+}
+
+/// Runs a map, and ends it as an error would once so many blocks are done.
+class EndedEarly final : public tasks::Engine {
+ public:
+  explicit EndedEarly(std::size_t blocks) : left_(blocks) {}
+  Check run(const tasks::Job& job, const tasks::TaskList& list, const tasks::Take& take,
+            const tasks::Progress& progress) override {
+    return threads_.run(
+        job, list,
+        [&](std::size_t task, std::string_view value) -> Check {
+          if (left_ == 0) return failure("ended early");
+          --left_;
+          return take(task, value);
+        },
+        progress);
   }
-  request.share = {};
-  const auto map = run_map(request, [](double) {});
-  ASSERT_TRUE(map) << describe(map.error());
-  EXPECT_EQ(map->resumed, block_points);
-  EXPECT_EQ(to_csv(*map), whole);
-  EXPECT_FALSE(std::filesystem::is_empty(folder)) << "the blocks must stay until the results are written";
-  remove_partial(folder);
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
+
+ private:
+  tasks::Threads threads_{1};
+  std::size_t left_;
+};
+
+TEST(Maps, AKilledMapContinuesFromItsLastWholeBlockToTheSameResult) {
+  for (const MapPrecision precision : {MapPrecision::lanes_of_double, MapPrecision::lanes_of_float}) {
+    const std::string folder = scratch_path().string();
+    std::filesystem::remove_all(folder);
+    MapRequest request = small_map();
+    request.precision = precision;
+    const std::string whole = csv_of(request);
+    request.place.folder = folder;
+    const bool single = precision == MapPrecision::lanes_of_float;
+    EndedEarly early(single ? 3 : 2);  // of three blocks; in float, some points are run again
+    request.place.engine = &early;
+    EXPECT_TRUE(csv_of(request) == "ended early");
+    {
+      // What a process leaves that is killed within a write.
+      std::ofstream half(std::filesystem::path(folder) / "tasks.partial", std::ios::app | std::ios::binary);
+      half << std::string("\5\0\0\0\x20\0\0\0half a block", 20);
+    }
+    request.place.engine = nullptr;
+    const auto map = run_map(request, [](double) {});
+    ASSERT_TRUE(map) << describe(map.error());
+    EXPECT_GE(map->resumed, single ? 1200U : 2 * 176U);
+    EXPECT_TRUE(to_csv(*map) == whole);
+    EXPECT_FALSE(std::filesystem::is_empty(folder)) << "the blocks must stay until the results are written";
+    tasks::remove_finished_tasks(folder);
+    EXPECT_TRUE(std::filesystem::is_empty(folder));
+  }
 }
 
-TEST(Maps, RanksThatShareAFolderGiveWhatOneGives) {
+TEST(Maps, AFinishedMapIsPutTogetherWithoutRunningAPoint) {
   const std::string folder = scratch_path().string();
   std::filesystem::remove_all(folder);
-  const std::string whole = csv_of(small_map());
-  MapRequest request = small_map(folder);
-  request.share = {.rank = 1, .ranks = 2};
-  ASSERT_TRUE(run_map(request, [](double) {}));
-  request.share = {.rank = 0, .ranks = 2};
-  EXPECT_EQ(csv_of(request), whole);
-}
-
-TEST(Maps, RanksThatShareAFloatMapAgreeOnWhatToRunAgain) {
-  const std::string folder = scratch_path().string();
+  const auto first = run_map(small_map(folder), [](double) {});
+  const auto second = run_map(small_map(folder), [](double) {});
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->resumed, 0U);
+  EXPECT_GT(first->ticks, 0.0);
+  EXPECT_EQ(second->resumed, 1200U);
+  EXPECT_EQ(second->ticks, 0.0);
+  EXPECT_EQ(to_csv(*first), to_csv(*second));
   std::filesystem::remove_all(folder);
-  MapRequest request = small_map();
-  request.precision = MapPrecision::lanes_of_float;
-  const std::string whole = csv_of(request);
-  request.folder = folder;
-  request.share = {.rank = 1, .ranks = 2};
-  std::jthread other([request] { EXPECT_TRUE(run_map(request, [](double) {})); });
-  request.share = {.rank = 0, .ranks = 2};
-  EXPECT_EQ(csv_of(request), whole);
-  remove_partial(folder);  // the other may still be waiting, and must not wait for ever
 }
 
 TEST(Maps, APartOfAnotherMapIsRefused) {
   const std::string folder = scratch_path().string();
   std::filesystem::remove_all(folder);
   MapRequest request = small_map(folder);
-  request.share = {.rank = 1, .ranks = 3};
   ASSERT_TRUE(run_map(request, [](double) {}));
   request.base.environment.damping_N_s_per_m = 4.0;
-  const auto map = run_map(request, [](double) {});
-  ASSERT_FALSE(map);
-  EXPECT_EQ(map.error().code, ErrorCode::inconsistent);
+  EXPECT_EQ(run_map(request, [](double) {}).error().code, ErrorCode::inconsistent);
+  request = small_map(folder);
+  request.precision = MapPrecision::lanes_of_float;
+  EXPECT_EQ(run_map(request, [](double) {}).error().code, ErrorCode::inconsistent);
+  request = small_map(folder);
+  request.axes[0] = *parse_axis("control.force_gain=0.5:31:30");
+  EXPECT_EQ(run_map(request, [](double) {}).error().code, ErrorCode::inconsistent);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Maps, ABlockComesBackFromItsBytes) {
+  const MapBlockKey key{.single = true, .points = {3, 4, 5, 9, 11, 12}};
+  const auto read = map_block_key(to_bytes(key), 13);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->points, key.points);
+  EXPECT_TRUE(read->single);
+  EXPECT_FALSE(map_block_key(to_bytes(key), 12)) << "point 12 is outside of the grid";
+  EXPECT_FALSE(map_block_key(to_bytes(key).substr(0, 7), 13));
+  EXPECT_FALSE(map_block_key("", 13));
+  const MapBlock block{.ticks = 7.0, .lane_ticks = 8.0, .points = {{.contacts = 1.0}, {.peak_force_N = 0.1}}};
+  EXPECT_EQ(map_block(to_bytes(block), 2)->points[1].peak_force_N, 0.1);
+  EXPECT_FALSE(map_block(to_bytes(block), 1));
+  EXPECT_FALSE(map_block(to_bytes(block), 3));
 }
 
 TEST(Maps, WhereVerdictsOfAFloatMapMeetBothAreThoseOfDoubleBitForBit) {

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/analysis/stability/lane_memory.hpp>
 #include <tactus/analysis/stability/map.hpp>
-#include <tactus/analysis/stability/map_file.hpp>
+#include <tactus/analysis/stability/map_block.hpp>
 #include <tactus/data/configuration/toml_writer.hpp>
-#include <tactus/data/report/files.hpp>
-#include <tactus/kernel/core/version.hpp>
-#include <tactus/simulation/teleoperator/parallel.hpp>
+#include <tactus/simulation/tasks/work.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <numeric>
-#include <optional>
-#include <span>
-#include <thread>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace tactus::stability {
@@ -25,47 +18,38 @@ namespace tactus::stability {
 namespace {
 
 constexpr std::size_t most_points = 10'000'000;
-/// Blocks of each further pass of a float map are numbered from a multiple of this.
-constexpr std::uint64_t blocks_a_pass = std::uint64_t{1} << 40;
 
-/// FNV-1a of everything that the results depend on.
-std::uint64_t identity_of(const MapRequest& request) {
-  std::string all = std::string(version()) + "\n" + configuration::to_toml(request.base);
+/// Everything besides the points of a block on which its results depend.
+std::string description_of(const MapRequest& request) {
+  std::string all = "stability map\n" + configuration::to_toml(request.base);
   all += request.precision == MapPrecision::lanes_of_float ? "float" : "double";
   for (const MapAxis& axis : request.axes) {
-    all += "\n" + axis.key;
+    all += "\n" + axis.key + "\n";
     all.append(reinterpret_cast<const char*>(axis.values.data()), axis.values.size() * sizeof(double));
   }
-  std::uint64_t hash = 14695981039346656037U;
-  for (const char c : all) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return hash;
+  return all;
 }
 
 /// Runs points of one map. Shared by the threads; holds nothing that changes.
 struct PointRunner {
   const MapRequest& request;
   LanePlan plan;
-  const LaneRunner& lanes;
-
-  struct Effort {
-    double ticks = 0.0;
-    double lane_ticks = 0.0;
-  };
 
   /// The points of the grid with these indices, as many lanes at once as there are.
-  Result<Effort> run(std::span<const std::size_t> indices, PointResult* results) const {
+  Result<MapBlock> run(const MapBlockKey& key) const {
+    const LaneRunner& lanes = lane_runner(key.single);
     PointParams params(request.base, request.axes);
     const std::size_t width = lanes.lanes;
     std::vector<LanePoint> points;
     std::vector<const LanePoint*> pointers(width);
     std::vector<LaneResult> runs(width);
     std::vector<double> force_N(plan.longest() * width), one_N;
-    Effort effort;
-    for (std::size_t first = 0; first < indices.size(); first += width) {
-      const std::size_t count = std::min(width, indices.size() - first);
+    MapBlock block;
+    for (std::size_t first = 0; first < key.points.size(); first += width) {
+      const std::size_t count = std::min(width, key.points.size() - first);
       points.clear();
       for (std::size_t i = 0; i < count; ++i) {
-        auto point = make_point(params.at(indices[first + i]));
+        auto point = make_point(params.at(key.points[first + i]));
         if (!point) return point.error();
         points.push_back(*std::move(point));
       }
@@ -77,94 +61,44 @@ struct PointRunner {
       for (std::size_t i = 0; i < count; ++i) {
         one_N.resize(runs[i].ticks);
         for (std::size_t n = 0; n < one_N.size(); ++n) one_N[n] = force_N[n * width + i];
-        results[first + i] = judge(runs[i], one_N, plan.clock.tick_s);
-        effort.ticks += static_cast<double>(runs[i].ticks);
+        block.points.push_back(judge(runs[i], one_N, plan.clock.tick_s));
+        block.ticks += static_cast<double>(runs[i].ticks);
         longest = std::max(longest, runs[i].ticks);
       }
-      effort.lane_ticks += static_cast<double>(longest * width);
+      block.lane_ticks += static_cast<double>(longest * width);
     }
-    return effort;
+    return block;
   }
 };
 
-/// One pass over some points of the grid: which blocks are done, and their results.
-struct Pass {
-  std::vector<std::size_t> indices;
-  std::uint64_t first_number = 0;
-  std::vector<PointResult> results = {};
-  std::vector<char> done = {};
-
-  Pass(std::vector<std::size_t> which, std::uint64_t number)
-      : indices(std::move(which)),
-        first_number(number),
-        results(indices.size()),
-        done((indices.size() + block_points - 1) / block_points) {}
-
-  [[nodiscard]] std::size_t size_of(std::size_t block) const {
-    return std::min(block_points, indices.size() - block * block_points);
-  }
-  [[nodiscard]] bool complete() const { return std::find(done.begin(), done.end(), 0) == done.end(); }
-
-  /// Takes over the blocks that are its own; returns how many points are new.
-  std::size_t take(const std::vector<MapStore::Block>& blocks) {
-    std::size_t taken = 0;
-    for (const MapStore::Block& block : blocks) {
-      if (block.number < first_number || block.number - first_number >= done.size()) continue;
-      const auto at = static_cast<std::size_t>(block.number - first_number);
-      if (done[at] != 0 || block.points.size() != size_of(at)) continue;
-      std::copy(block.points.begin(), block.points.end(),
-                results.begin() + static_cast<std::ptrdiff_t>(at * block_points));
-      done[at] = 1;
-      taken += block.points.size();
-    }
-    return taken;
-  }
-};
-
-/// Runs what this rank has to do of a pass, then waits for the others where `wait` says so; but not once rank 0 has the
-/// whole map and has removed the files.
-Check run_pass(Pass& pass, const MapRequest& request, const PointRunner& runner, std::optional<MapStore>& store,
-               bool wait, MapResult& result, const std::function<void(double)>& progress) {
-  if (store) {
-    const auto blocks = store->read_all();
-    if (!blocks) return blocks.error();
-    result.resumed += pass.take(*blocks);
-  }
-  std::vector<std::size_t> mine;
-  for (std::size_t block = 0; block < pass.done.size(); ++block) {
-    if (pass.done[block] == 0 && block % request.share.ranks == request.share.rank) mine.push_back(block);
-  }
-  std::mutex guard;
-  Check failure;
-  std::atomic<bool> failed = false;
-  simulation::for_each_in_parallel(
-      mine.size(),
-      [&](std::size_t i) {
-        if (failed) return;
-        const std::size_t block = mine[i], first = block * block_points, count = pass.size_of(block);
-        const auto effort = runner.run(std::span(pass.indices).subspan(first, count), pass.results.data() + first);
-        const std::lock_guard lock(guard);
-        if (!effort) {
-          if (!failed.exchange(true)) failure = effort.error();
-          return;
+/// Runs some points of the grid in blocks: the point of each place below `count`.
+Check run_points(tasks::Work& work, bool single, std::size_t count,
+                 const std::function<std::size_t(std::size_t place)>& point, MapResult& result,
+                 const std::function<void(double)>& progress) {
+  const auto size_of = [&](std::size_t block) { return std::min(block_points, count - block * block_points); };
+  return work.run(
+      {.count = (count + block_points - 1) / block_points,
+       .key =
+           [&](std::size_t block) {
+             MapBlockKey key{.single = single, .points = {}};
+             for (std::size_t i = 0; i < size_of(block); ++i) key.points.push_back(point(block * block_points + i));
+             return to_bytes(key);
+           }},
+      [&](std::size_t number, std::string_view value, tasks::Origin origin) -> Check {
+        const auto block = map_block(value, size_of(number));
+        if (!block) return block.error();
+        for (std::size_t i = 0; i < block->points.size(); ++i) {
+          result.points[point(number * block_points + i)] = block->points[i];
         }
-        result.ticks += effort->ticks;
-        result.lane_ticks += effort->lane_ticks;
-        pass.done[block] = 1;
-        if (!store) return;
-        if (auto error = store->append(pass.first_number + block, pass.results.data() + first, count)) {
-          if (!failed.exchange(true)) failure = std::move(error);
+        if (origin == tasks::Origin::stored) {
+          result.resumed += block->points.size();
+        } else {
+          result.ticks += block->ticks;
+          result.lane_ticks += block->lane_ticks;
         }
+        return {};
       },
-      progress, request.threads);
-  if (failure) return failure;
-  while (wait && !pass.complete() && store->is_there()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    const auto blocks = store->read_all();
-    if (!blocks) return blocks.error();
-    pass.take(*blocks);
-  }
-  return {};
+      progress);
 }
 
 /// Points with another verdict next to them along some axis, where rounding could matter, but for those that are
@@ -234,44 +168,40 @@ Result<MapResult> run_map(const MapRequest& request, const std::function<void(do
   const auto plan = make_plan(request.base);
   if (!plan) return plan.error();
   if (auto error = check_corners(request, *count)) return *std::move(error);
-  std::optional<MapStore> store;
-  if (!request.folder.empty()) {
-    if (auto error = report::prepare_directory(request.folder)) return *std::move(error);
-    auto opened = MapStore::open(request.folder, identity_of(request), request.share.rank);
-    if (!opened) return opened.error();
-    store.emplace(*std::move(opened));
-  }
-
   const bool single = request.precision == MapPrecision::lanes_of_float;
-  const bool several = store && request.share.ranks > 1;
-  // In float every rank must know all verdicts, to tell which points to run again.
-  const bool waits = several && (single || request.share.rank == 0);
-  const PointRunner first_runner{request, *plan, lane_runner(single)};
-  MapResult result{.axes = request.axes, .points = {}, .instruction_set = first_runner.lanes.name};
-  std::vector<std::size_t> all(*count);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  Pass pass(std::move(all), 0);
-  if (auto error = run_pass(pass, request, first_runner, store, waits, result, progress)) return *std::move(error);
-  result.points = std::move(pass.results);
+  const PointRunner runner{request, *plan};
+  auto work = tasks::Work::begin(
+      request.place,
+      {.description = description_of(request), .run = [&runner, count](std::string_view bytes) -> Result<std::string> {
+         const auto key = map_block_key(bytes, *count);
+         if (!key) return key.error();
+         const auto block = runner.run(*key);
+         if (!block) return block.error();
+         return to_bytes(*block);
+       }});
+  if (!work) return work.error();
+  MapResult result{.axes = request.axes, .points = {}, .instruction_set = lane_runner(single).name};
+  if (!work->leads()) return result;
+  result.points.resize(*count);
+  if (auto error = run_points(
+          *work, single, *count, [](std::size_t place) { return place; }, result, progress)) {
+    return *std::move(error);
+  }
   if (!single) return result;
 
   // A verdict that changes in double can put the boundary beside points that are still in float, so until none is left.
-  const PointRunner exact_runner{request, *plan, lane_runner(false)};
   std::vector<char> exact(*count);
-  for (std::uint64_t number = blocks_a_pass;; number += blocks_a_pass) {
-    Pass again(near_boundary(result, exact), number);
-    if (again.indices.empty()) return result;
-    if (auto error = run_pass(again, request, exact_runner, store, waits, result, progress)) return *std::move(error);
-    if (!again.complete()) return result;  // a rank above 0 whose work is no longer wanted
-    for (std::size_t i = 0; i < again.indices.size(); ++i) {
-      result.points[again.indices[i]] = again.results[i];
-      exact[again.indices[i]] = 1;
+  for (;;) {
+    const std::vector<std::size_t> again = near_boundary(result, exact);
+    if (again.empty()) return result;
+    if (auto error = run_points(
+            *work, false, again.size(), [&again](std::size_t place) { return again[place]; }, result, progress)) {
+      return *std::move(error);
     }
-    result.redone += again.indices.size();
+    for (const std::size_t point : again) exact[point] = 1;
+    result.redone += again.size();
   }
 }
-
-void remove_partial(const std::filesystem::path& folder) { MapStore::remove_all(folder); }
 
 std::vector<double> settled_limit(const MapResult& map, std::size_t along) {
   std::size_t stride = 1;

@@ -4,10 +4,9 @@
 #include <tactus/analysis/stability/map_axis.hpp>
 #include <tactus/analysis/stability/map_point.hpp>
 #include <tactus/kernel/core/result.hpp>
+#include <tactus/simulation/tasks/task.hpp>
 
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,18 +19,11 @@ enum class MapPrecision {
   lanes_of_float,   ///< in float, and again in double until no verdict in float is next to a different one
 };
 
-/// A share of the work: process `rank` of `ranks`, which all write to one folder.
-struct MapShare {
-  std::size_t rank = 0, ranks = 1;
-};
-
 struct MapRequest {
   MapParams base;
   std::vector<MapAxis> axes;  ///< the first slowest
   MapPrecision precision = MapPrecision::lanes_of_double;
-  std::filesystem::path folder;  ///< for partial results, from where a killed run continues; empty: none
-  MapShare share;
-  std::size_t threads = 0;  ///< 0: as many as the machine has cores
+  tasks::Place place = {};  ///< where it runs; its folder has the blocks from which a killed run continues
 };
 
 struct MapResult {
@@ -39,12 +31,12 @@ struct MapResult {
   std::vector<PointResult> points;  ///< row-major in the axes
   std::size_t resumed = 0;          ///< points that an earlier run had left
   std::size_t redone = 0;           ///< points of a float map that were run again in double
-  double ticks = 0.0;               ///< loop ticks that this process ran
+  double ticks = 0.0;               ///< loop ticks that this run computed, in all processes
   double lane_ticks = 0.0;          ///< and as many as there would be without lanes that wait for the last of a block
   std::string instruction_set;
 };
 
-/// Points per block: what a thread takes, a partial file gains, and a killed run loses at most.
+/// Points per block. A block is one task.
 inline constexpr std::size_t block_points = 512;
 
 /// Number of points. Errors: `inconsistent` without an axis, for a key that is varied twice, and for more than ten
@@ -52,16 +44,12 @@ inline constexpr std::size_t block_points = 512;
 Result<std::size_t> count_points(const std::vector<MapAxis>& axes);
 
 /// Runs every point that no earlier run has left in the folder. Equal requests give equal results, bit for bit,
-/// whatever the number of threads and ranks, the order of the blocks, the instruction set, and however often the run
-/// was killed. A rank above 0 returns with what it knows when its own share is done; rank 0 waits for the others. The
-/// finished blocks stay in the folder until `remove_partial`.
+/// whatever the engine, the number of its processes and threads, the order of the blocks, the instruction set, and
+/// however often the run was killed. In a process that does not lead, computes blocks for the one that does, and
+/// returns no points. The finished blocks stay in the folder until `tasks::remove_finished_tasks`.
 ///
-/// Errors: those of `make_point`, checked at the corners of the grid before anything is run; `inconsistent` for a
-/// folder that holds a part of another map; `unwritable`.
+/// Errors: those of `make_point`, checked at the corners of the grid before anything is run; those of `tasks::Work`.
 Result<MapResult> run_map(const MapRequest& request, const std::function<void(double)>& progress);
-
-/// Removes the finished blocks of all ranks: what rank 0 does once the results are written.
-void remove_partial(const std::filesystem::path& folder);
 
 /// The largest value of axis `along` (an index) below which every verdict is settled or ringing, for each combination
 /// of the others in row-major order: 0 steps gives NaN, all steps the last value.

@@ -7,6 +7,7 @@
 #include <tactus/interfaces/cli/internal/command_words.hpp>
 #include <tactus/interfaces/cli/plugin.hpp>
 #include <tactus/interfaces/cli/printable_output.hpp>
+#include <tactus/interfaces/cli/processes.hpp>
 #include <tactus/interfaces/cli/standard_output.hpp>
 #include <tactus/interfaces/cli/streams.hpp>
 #include <tactus/interfaces/cli/suggestion.hpp>
@@ -109,6 +110,7 @@ int run_words(const std::string& name, int argc, const char* const* given) {
   if (is_in_process()) {
     if (const auto error = refuse_in_process(argc, argv)) return report_error(name, *error);
   }
+  if (const auto error = refuse_processes(argc, argv)) return report_error(name, *error);
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
   app.set_version_flag("--version", version_text());
@@ -200,7 +202,8 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int run_command(int argc, char** argv) {
+int run_command(int argc, char** argv, tasks::Engine* engine) {
+  set_engine_of_commands(engine);
   // What is thrown is what nobody can do without: memory, or a thread. Told without any of either.
   try {
     return run(argc, argv);

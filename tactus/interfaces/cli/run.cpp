@@ -5,6 +5,7 @@
 #include <tactus/interfaces/cli/line_writer.hpp>
 #include <tactus/interfaces/cli/observers.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
+#include <tactus/interfaces/cli/processes.hpp>
 #include <tactus/interfaces/cli/progress_line.hpp>
 #include <tactus/interfaces/cli/ros2_session.hpp>
 #include <tactus/interfaces/cli/run_log.hpp>
@@ -15,6 +16,7 @@
 #include <tactus/simulation/experiments/experiment.hpp>
 #include <tactus/simulation/real_time/real_time_arm_tap.hpp>
 #include <tactus/simulation/real_time/real_time_tapping.hpp>
+#include <tactus/simulation/tasks/work.hpp>
 
 #include <array>
 #include <cstdint>
@@ -188,10 +190,13 @@ Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options
 }
 
 Check run(const RunOptions& options, const std::string& command, int& status) {
-  const auto request = make_request(options, command);
+  auto request = make_request(options, command);
   if (!request) return request.error();
-  auto output = OutputFolder::open(options.output);
+  auto output = OutputFolder::open(presents_results() ? options.output : OutputOptions{});
   if (!output) return output.error();
+  if (options.supervised.wanted() || options.real_time || options.observers.ros2) {
+    if (auto error = refuse_to_share("a run in real time")) return error;
+  }
   if (options.supervised.wanted()) {
     return run_supervised(options.supervised, options.observers, options.servo, *request, *output, options.log_limit);
   }
@@ -208,15 +213,22 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   if (options.real_time) return run_in_real_time(options, *request, *output, status);
   if (options.observers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
 
+  if ((*experiment)->has_tasks()) {
+    request->place = {.engine = engine_of_commands(), .folder = output->path()};
+  } else if (auto error = refuse_to_share("an experiment of kind " + std::string((*experiment)->kind()))) {
+    return error;
+  }
   Result<experiments::Outcome> outcome = [&] {
     ProgressLine line(request->name);
     return (*experiment)->run(*request, [&line](double done) { line.update(done); });
   }();
   if (!outcome) return outcome.error();
+  if (!presents_results()) return std::nullopt;
 
   std::vector<NamedText> files;
   if (!outcome->recording.empty()) files.push_back({recording_file, outcome->recording});
   if (auto error = write_outcome(*output, *outcome, files)) return error;
+  if (output->wanted()) tasks::remove_finished_tasks(output->path());
   if (!output->wanted() || outcome->traces.empty()) return std::nullopt;
   if (auto error = write_run_log(output->log_folder(), *request, *outcome, options.log_limit)) return error;
   output->announce_log();

@@ -8,13 +8,14 @@
 #include <tactus/data/configuration/toml_writer.hpp>
 #include <tactus/interfaces/cli/experiment_options.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
+#include <tactus/interfaces/cli/processes.hpp>
 #include <tactus/interfaces/cli/progress_line.hpp>
 #include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/stability.hpp>
 #include <tactus/interfaces/cli/streams.hpp>
+#include <tactus/simulation/tasks/work.hpp>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -41,17 +42,6 @@ Error of_other_experiments(const char* option, const char* message) {
   return {.code = ErrorCode::inconsistent, .parameter = {}, .message = message, .place = option};
 }
 
-/// Which process of how many this is, as the launcher of Open MPI tells every program that it starts.
-stability::MapShare share_of_this_process() {
-  const auto number = [](const char* name, long otherwise) {
-    const char* text = std::getenv(name);
-    return text != nullptr ? std::strtol(text, nullptr, 10) : otherwise;
-  };
-  const long ranks = number("OMPI_COMM_WORLD_SIZE", 1), rank = number("OMPI_COMM_WORLD_RANK", 0);
-  if (ranks < 1 || rank < 0 || rank >= ranks) return {};
-  return {.rank = static_cast<std::size_t>(rank), .ranks = static_cast<std::size_t>(ranks)};
-}
-
 Result<stability::MapRequest> make_request(const MapOptions& options, const configuration::Document& document) {
   auto base = document.read<stability::MapParams>();
   if (!base) return base.error();
@@ -65,16 +55,7 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
   }
   request.precision =
       options.precision == "float" ? stability::MapPrecision::lanes_of_float : stability::MapPrecision::lanes_of_double;
-  request.share = share_of_this_process();
-  if (options.output.folder) request.folder = *options.output.folder;
-  if (request.share.ranks > 1 && !options.output.folder) {
-    return Error{.code = ErrorCode::syntax,
-                 .parameter = {},
-                 .message =
-                     "several processes need a folder that they share: write one, as in "
-                     "--out results",
-                 .place = "--out"};
-  }
+  request.place = {.engine = engine_of_commands(), .folder = options.output.folder.value_or("")};
   return request;
 }
 
@@ -98,7 +79,7 @@ Check present(OutputFolder& output, const stability::MapResult& map, stability::
                                  files)) {
     return error;
   }
-  if (output.wanted()) stability::remove_partial(output.path());
+  if (output.wanted()) tasks::remove_finished_tasks(output.path());
   return std::nullopt;
 }
 
@@ -142,9 +123,12 @@ Check run_arms(const MapOptions& options, const configuration::Document& documen
 Check run(const MapOptions& options, const std::string& command) {
   auto document = load_experiment(options.experiment);
   if (!document) return document.error();
-  auto output = OutputFolder::open(options.output);
+  auto output = OutputFolder::open(presents_results() ? options.output : OutputOptions{});
   if (!output) return output.error();
-  if (experiments::is_of_arms(*document)) return run_arms(options, *document, command, *output);
+  if (experiments::is_of_arms(*document)) {
+    if (auto error = refuse_to_share("a map of two arms")) return error;
+    return run_arms(options, *document, command, *output);
+  }
   if (!options.hands.empty()) {
     return of_other_experiments("--hand", "hands are mapped of two arms: vary the keys of operator instead");
   }
@@ -159,7 +143,7 @@ Check run(const MapOptions& options, const std::string& command) {
     return stability::run_map(*request, [&line](double done) { line.update(done); });
   }();
   if (!map) return document->locate(map.error());
-  if (request->share.rank > 0) return {};
+  if (!presents_results()) return {};
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const experiments::Request about{.document = *std::move(document),
                                    .variations = {},

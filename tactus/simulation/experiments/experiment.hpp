@@ -5,6 +5,7 @@
 #include <tactus/data/configuration/toml_writer.hpp>
 #include <tactus/data/report/figure.hpp>
 #include <tactus/kernel/core/result.hpp>
+#include <tactus/simulation/tasks/task.hpp>
 #include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <functional>
@@ -39,6 +40,8 @@ struct Request {
   std::vector<Variation> variations;
   std::string name;     ///< of the experiment's file, for titles
   std::string command;  ///< that repeats the run, for the report
+  /// Where a kind that `has_tasks` runs them. Others run in threads of this process.
+  tasks::Place place = {};
 };
 
 /// One run that the figures show, every tick of it, for the log.
@@ -71,7 +74,11 @@ class Experiment {
   [[nodiscard]] virtual std::string schema() const = 0;
   /// Reference page of its files, in Markdown.
   [[nodiscard]] virtual std::string reference() const = 0;
-  /// Checks every combination before the first is run. Errors carry the place of the value that caused them.
+  /// Whether `run` does its work as tasks at `Request::place`: it continues where a killed run ended, and several
+  /// processes share the work.
+  [[nodiscard]] virtual bool has_tasks() const { return false; }
+  /// Checks every combination before the first is run. Errors carry the place of the value that caused them. In a
+  /// process that does not lead, the outcome of a kind that `has_tasks` is empty.
   [[nodiscard]] virtual Result<Outcome> run(const Request& request, const Progress& progress) const = 0;
 };
 

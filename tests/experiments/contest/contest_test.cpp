@@ -160,7 +160,7 @@ TEST(Contest, GivesTheSameBitsInWhateverOrderItsPiecesAreComputed) {
     }
     if (reversed) std::reverse(jobs.begin(), jobs.end());
     std::vector<MethodScore> scores(all.size());
-    for (const ContestJob& job : jobs) job.run(scores[job.method]);
+    for (const ContestJob& job : jobs) EXPECT_TRUE(job.take(job.run(), scores[job.method])) << job.name;
     return contest_json("contest", scores, all.front());
   };
   EXPECT_EQ(json(false), json(true));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/simulation/experiments/contest/contest.hpp>
+#include <tactus/simulation/experiments/contest/score_bytes.hpp>
 #include <tactus/simulation/experiments/contest/spectral_error.hpp>
 #include <tactus/simulation/teleoperator/quantile.hpp>
 
@@ -166,42 +167,53 @@ Result<std::vector<ContestJob>> contest_jobs(std::size_t method, const ContestPa
   const TappingParams strong = with_display(nominal, task.strong_display_N);
   std::vector<TappingParams> conditions;
   std::vector<ContestJob> jobs;
-  const auto find_limit = [&](TappingParams condition, auto place) {
-    conditions.push_back(condition);
-    jobs.push_back({method, [condition = std::move(condition), task, place](MethodScore& score) {
-                      place(score) = tapping_gain_limit(condition, task);
-                    }});
+  const auto add = [&](std::string name, auto compute, auto place) {
+    jobs.push_back(
+        {.method = method,
+         .name = std::move(name),
+         .run = [compute] { return to_bytes(compute()); },
+         .take = [place](std::string_view piece, MethodScore& score) { return from_bytes(piece, place(score)); }});
   };
-  const auto score_at = [&](TappingParams condition, double gain, auto place) {
+  const auto find_limit = [&](std::string name, const TappingParams& condition, auto place) {
+    conditions.push_back(condition);
+    add(
+        "gain limit, " + std::move(name), [condition, task] { return tapping_gain_limit(condition, task); }, place);
+  };
+  const auto score_at = [&](std::string name, TappingParams condition, double gain, auto place) {
     condition.control.force_gain = gain;
     conditions.push_back(condition);
-    jobs.push_back({method, [condition = std::move(condition), place](MethodScore& score) {
-                      place(score) = score_taps(condition);
-                    }});
+    add(
+        "taps, " + std::move(name), [condition] { return score_taps(condition); }, place);
   };
 
   // The longest first, so that no core waits for them at the end.
   for (std::size_t i = contest_delays_s.size(); i-- > 0;) {
     find_limit(
+        "delay " + std::to_string(i),
         with_delay(nominal, contest_delays_s[i]), [i](MethodScore & s) -> auto& { return s.delayed[i]; });
   }
   find_limit(
-      nominal, [](MethodScore & s) -> auto& { return s.limit; });
+      "nominal", nominal, [](MethodScore & s) -> auto& { return s.limit; });
   find_limit(
-      strong, [](MethodScore & s) -> auto& { return s.strong_display; });
+      "strong display", strong, [](MethodScore & s) -> auto& { return s.strong_display; });
   for (std::size_t i = 0; i < contest_grips.size(); ++i) {
     find_limit(
+        "grip " + std::to_string(i),
         with_grip(nominal, contest_grips[i]), [i](MethodScore & s) -> auto& { return s.gripped[i]; });
   }
   for (std::size_t i = 0; i < contest_gains.size(); ++i) {
     score_at(
-        nominal, contest_gains[i], [i](MethodScore & s) -> auto& { return s.at_gain[i]; });
+        "nominal, gain " + std::to_string(i), nominal,
+        contest_gains[i], [i](MethodScore & s) -> auto& { return s.at_gain[i]; });
     score_at(
-        strong, contest_gains[i], [i](MethodScore & s) -> auto& { return s.strong_at_gain[i]; });
+        "strong display, gain " + std::to_string(i), strong,
+        contest_gains[i], [i](MethodScore & s) -> auto& { return s.strong_at_gain[i]; });
   }
   simulation::Teleoperator::Params free_space = nominal;
   free_space.control.force_gain = 1.0;
-  jobs.push_back({method, [free_space](MethodScore& score) { score.free_space = score_free_space(free_space); }});
+  add(
+      "free space", [free_space] { return score_free_space(free_space); },
+      [](MethodScore & s) -> auto& { return s.free_space; });
 
   for (TappingParams& condition : conditions) {
     condition.task.taps = 1;

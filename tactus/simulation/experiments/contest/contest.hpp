@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -126,10 +127,13 @@ GainScore score_taps(const TappingParams& params);
 /// The reach that meets nothing. `params` must be valid.
 FreeSpaceScore score_free_space(const simulation::Teleoperator::Params& params);
 
-/// One piece of a competitor's score: `run` computes it and writes it to its own place in `score`.
+/// One piece of a competitor's score, which any process can compute: a task.
 struct ContestJob {
-  std::size_t method;
-  std::function<void(MethodScore& score)> run;
+  std::size_t method = 0;
+  std::string name;                  ///< of the piece, as no other one of this competitor
+  std::function<std::string()> run;  ///< computes the piece, as bytes
+  /// Writes the piece to its own place in the score. False for bytes that are no such piece.
+  std::function<bool(std::string_view piece, MethodScore& score)> take;
 };
 
 /// What has to be computed for the competitor with index `method` and these parameters, in independent pieces. Errors:

@@ -2,9 +2,13 @@
 #include <tactus/simulation/experiments/contest/contest.hpp>
 #include <tactus/simulation/experiments/contest/presentation.hpp>
 #include <tactus/simulation/experiments/experiment_of.hpp>
-#include <tactus/simulation/teleoperator/parallel.hpp>
+#include <tactus/simulation/tasks/work.hpp>
 
+#include <functional>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace tactus::experiments {
 
@@ -14,6 +18,7 @@ namespace {
 class ContestExperiment final : public ExperimentOf<ContestParams> {
   /// Errors besides those of every experiment: `inconsistent` for a varied key.
   Result<Outcome> run(const Request& request, const Progress& progress) const override;
+  bool has_tasks() const override { return true; }
 };
 
 constexpr std::string_view contest_title = "Every way to keep contact stable, side by side";
@@ -65,6 +70,34 @@ report::Page page_of(const Request& request, const std::string& verdict, const r
   return page;
 }
 
+std::string task_key(const ContestJob& piece) {
+  return std::string(contest_methods()[piece.method].name) + ": " + piece.name;
+}
+
+Error not_a_piece(const std::string& key) {
+  return {.code = ErrorCode::failed,
+          .parameter = {},
+          .message = "the result of the task '" + key + "' cannot be read: start the job again",
+          .place = {}};
+}
+
+/// The pieces as tasks, by their keys. `pieces` must outlive the job.
+tasks::Job job_of(const std::vector<ContestJob>& pieces, const ContestParams& params) {
+  std::string description = "contest\n" + configuration::to_toml(params);
+  std::map<std::string, const ContestJob*, std::less<>> by_key;
+  for (const ContestJob& piece : pieces) by_key.emplace(task_key(piece), &piece);
+  for (const ContestMethod& method : contest_methods()) {
+    description += std::string(method.name) + ":";
+    for (const std::string_view setting : method.settings) description += " " + std::string(setting);
+    description += "\n";
+  }
+  return {.description = std::move(description), .run = [by_key](std::string_view key) -> Result<std::string> {
+            const auto piece = by_key.find(key);
+            if (piece == by_key.end()) return not_a_piece(std::string(key));
+            return piece->second->run();
+          }};
+}
+
 Result<Outcome> ContestExperiment::run(const Request& request, const Progress& progress) const {
   if (Check error =
           refuse_variations(request, "the contest varies what it compares by itself: set one value with --set")) {
@@ -72,17 +105,27 @@ Result<Outcome> ContestExperiment::run(const Request& request, const Progress& p
   }
   const auto params = request.document.read<ContestParams>();
   if (!params) return params.error();
-  std::vector<ContestJob> jobs;
+  std::vector<ContestJob> pieces;
   for (std::size_t method = 0; method < contest_methods().size(); ++method) {
     const auto own = read_with(request.document, contest_methods()[method]);
     if (!own) return own.error();
     auto more = contest_jobs(method, *own);
     if (!more) return request.document.locate(more.error());
-    for (ContestJob& job : *more) jobs.push_back(std::move(job));
+    for (ContestJob& piece : *more) pieces.push_back(std::move(piece));
   }
   std::vector<MethodScore> scores(contest_methods().size());
-  simulation::for_each_in_parallel(
-      jobs.size(), [&](std::size_t i) { jobs[i].run(scores[jobs[i].method]); }, progress);
+  auto work = tasks::Work::begin(request.place, job_of(pieces, *params));
+  if (!work) return work.error();
+  if (!work->leads()) return Outcome{};
+  if (auto error = work->run(
+          {.count = pieces.size(), .key = [&](std::size_t i) { return task_key(pieces[i]); }},
+          [&](std::size_t i, std::string_view value, tasks::Origin) -> Check {
+            if (pieces[i].take(value, scores[pieces[i].method])) return {};
+            return not_a_piece(task_key(pieces[i]));
+          },
+          progress)) {
+    return *std::move(error);
+  }
 
   const report::Table table = contest_table(scores, *params);
   report::Figure figure = contest_figure(scores, *params);
