@@ -5,6 +5,7 @@
 #include <tactus/interfaces/cli/line_writer.hpp>
 #include <tactus/interfaces/cli/operator_input.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
+#include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/rig_run.hpp>
 #include <tactus/interfaces/cli/run_log.hpp>
 #include <tactus/interfaces/cli/supervised_report.hpp>
@@ -248,7 +249,7 @@ void add_site_options(CLI::App& verb, SupervisedOptions& options) {
       ->group(supervised_group);
   verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as a packet of the slave is received")
       ->group(supervised_group);
-  add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
+  add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S")->check(real_between(0.0, 1e6));
 }
 
 Check refuse_link_without_site(const CLI::App& verb, const SupervisedOptions& options) {
