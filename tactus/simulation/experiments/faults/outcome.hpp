@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tactus/kernel/arm/units.hpp>
 #include <tactus/kernel/core/signals.hpp>
 
 #include <cstdint>
@@ -56,10 +57,10 @@ struct ArmHarm {
                  "follow."),
         observed("fell_m", &ArmHarm::fell_m, units::metre, "", "", "down",
                  "How far a tool went down once its drives had no power."),
-        observed("moved_rad", &ArmHarm::moved_rad, units::none, "", "", "",
-                 "Where the model is wrong: farthest of a joint from where it lay until its site released it, in rad."),
-        observed("leapt_rad_per_s", &ArmHarm::leapt_rad_per_s, units::none, "", "", "",
-                 "Where the model is wrong: fastest of a joint until then, in rad/s.")};
+        observed("moved_rad", &ArmHarm::moved_rad, arm::units::radian, "", "", "",
+                 "Where the model is wrong: farthest of a joint from where it lay until its site released it."),
+        observed("leapt_rad_per_s", &ArmHarm::leapt_rad_per_s, arm::units::radian_per_second, "", "", "",
+                 "Where the model is wrong: fastest of a joint until then.")};
   }
 };
 
