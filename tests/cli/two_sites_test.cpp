@@ -199,6 +199,10 @@ TEST_F(Command, OneSiteRefusesWhatCannotBeWithTheRemedy) {
   refused({"--peer", "127.0.0.1:7300", "--unencrypted", "--key", "key"}, "leave out one");
   refused({"--peer", "127.0.0.1:7300", "--key", "missing"}, "tactus key");
   refused({"--peer", "127.0.0.1:7300", "--unencrypted", "--vary", "control.force_gain=1,2"}, "--vary");
+  // None of these is a time after which a run ends.
+  for (const char* time_s : {"nan", "inf", "-1", "1e300"}) {
+    refused({"--peer", "127.0.0.1:7300", "--unencrypted", "--duration-s", time_s}, "--duration-s");
+  }
 }
 
 TEST_F(Command, AKeyIsMadeOnceAndNeverOverwritten) {

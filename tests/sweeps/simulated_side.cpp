@@ -74,7 +74,9 @@ double SimulatedSide::from_outside(const Joint& joint, double position, double v
   const auto at = static_cast<std::size_t>(&joint - joints_.data());
   const double home = at < of_arm_ ? began_at_[static_cast<Eigen::Index>(at)] : 0.0;
   double force = 0.0;
-  if (is_led_) {
+  // An arm is let alone until its motors were tried: a hand that holds it like a spring takes it back between the lobes
+  // of a trial, which looks as if it had moved the wrong way.
+  if (is_led_ && (moves_ || at >= of_arm_)) {
     const double phase = joint.rad_per_s * path_s_;
     const double wanted = home + joint.reach * std::sin(phase);
     const double wanted_per_s = moves_ ? joint.reach * joint.rad_per_s * std::cos(phase) : 0.0;

@@ -21,7 +21,7 @@ namespace tactus::sweeps {
 ///
 /// The joints of an arm are MuJoCo's. Any other one is a mass with Coulomb friction. A hand pulls each joint of a
 /// leader, like a spring that swings at 4 Hz, along a path of its own: there and back at up to 2 rad/s (0.2 m/s of an
-/// axis).
+/// axis). It takes an arm only once it begins its path.
 class SimulatedSide final : public devices::MotorLink {
  public:
   SimulatedSide(const devices::RigSide& side, const station::DescribedArm* arm, bool is_led, bool meets_stops,

@@ -5,6 +5,7 @@
 #include <tactus/interfaces/cli/line_writer.hpp>
 #include <tactus/interfaces/cli/operator_input.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
+#include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/rig_run.hpp>
 #include <tactus/interfaces/cli/run_log.hpp>
 #include <tactus/interfaces/cli/supervised_report.hpp>
@@ -250,7 +251,7 @@ void add_site_options(CLI::App& verb, SupervisedOptions& options) {
                 "At the master: arm once, after packets of the slave have arrived for the duration of the "
                 "watchdog's timeout")
       ->group(supervised_group);
-  add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
+  add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S")->check(real_between(0.0, 1e6));
 }
 
 Check refuse_link_without_site(const CLI::App& verb, const SupervisedOptions& options) {

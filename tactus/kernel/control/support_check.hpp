@@ -37,8 +37,8 @@ constexpr auto enumerators(SupportFault) {
 ///
 /// The support is at fault where |E| exceeds `weight_share` of the weight by the model that has come in, and
 /// `least_force_N` too; where the joint is `most_m` from x0; and where it is faster than `most_m_per_s`, by its drive
-/// or by its position. While the support still comes in, |E| may be twice that share: a hand that holds the device
-/// yields later than the weight goes.
+/// or by its position. While the support still comes in, and until a hand that holds the device has yielded, which it
+/// does later than the weight goes, |E| may be twice that share, and `trial_force_N`.
 ///
 /// Range: B·dt well below m, unless the drive runs the damper by itself; then the loop over the bus is stable for any m
 /// if K·delay < B.
@@ -50,6 +50,7 @@ class SupportCheck {
     double damping_N_s_per_m = 0.0;
     double weight_share = 0.3;
     double least_force_N = 0.0;
+    double trial_force_N = 0.0;
     double weight_limit_N = 100.0;
     double most_m = 0.02;
     double most_m_per_s = 0.4;
@@ -64,6 +65,8 @@ class SupportCheck {
                         "Share of the weight by which the support may be wrong."),
                   field("least_force_N", &Params::least_force_N, units::newton, between(0.0, 100.0),
                         "Force by which it may be wrong, whatever the weight."),
+                  field("trial_force_N", &Params::trial_force_N, units::newton, between(0.0, 100.0),
+                        "Force with which motors are tried; meanwhile it may be wrong by so much more."),
                   field("weight_limit_N", &Params::weight_limit_N, units::newton, positive_up_to(100.0),
                         "Weight above which nothing is powered."),
                   field("most_m", &Params::most_m, units::metre, positive_up_to(0.03), "Travel that is a fault."),
@@ -76,9 +79,9 @@ class SupportCheck {
     double velocity_m_per_s = 0.0;  ///< that the drive reports; 0 where it reports none
     double weight_N = 0.0;          ///< by the model, all of it
     double share = 0.0;             ///< of it that has come in
-    bool rises = false;             ///< it still comes in
+    bool rises = false;             ///< it still comes in, or just has
     bool judged = true;             ///< false: the law yields as friction does, and nothing is a fault
-    bool tried = false;             ///< motors are tried meanwhile, with `least_force_N` at most
+    bool tried = false;             ///< motors are tried meanwhile, with `trial_force_N` at most
     std::int64_t elapsed_ticks = 1;
   };
   using Output = SupportFault;
@@ -126,7 +129,8 @@ class SupportCheck {
     speed_m_per_s_ = std::fabs(input.velocity_m_per_s) > std::fabs(measured) ? input.velocity_m_per_s : measured;
     moved_m_ = input.position_m - began_m_;
     const double share = (input.rises ? 2.0 : 1.0) * params_.weight_share * input.share;
-    const double may_be_N = std::max(params_.least_force_N, share * std::fabs(input.weight_N));
+    const double least_N = input.rises ? std::max(params_.least_force_N, params_.trial_force_N) : params_.least_force_N;
+    const double may_be_N = std::max(least_N, share * std::fabs(input.weight_N));
     if (!input.judged && holds()) {
       const double yields_m = std::min(may_be_N / params_.stiffness_N_per_m, params_.most_m);
       anchor_m_ = std::clamp(anchor_m_, input.position_m - yields_m, input.position_m + yields_m);
@@ -140,7 +144,7 @@ class SupportCheck {
         input.tried ? std::min(trial_margin * params_.most_m_per_s, most_ever_m_per_s) : params_.most_m_per_s;
     if (std::fabs(speed_m_per_s_) > most_m_per_s) return SupportFault::speed;
     // What a trial accelerates is in the excess, up to the force of the trial.
-    const double most_N = may_be_N + (input.tried ? params_.least_force_N : 0.0);
+    const double most_N = may_be_N + (input.tried ? params_.trial_force_N : 0.0);
     return std::fabs(excess_N_) > most_N ? SupportFault::force : SupportFault::none;
   }
 

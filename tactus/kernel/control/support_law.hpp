@@ -23,8 +23,13 @@ struct HoldingSource {
 /// joint at three quarters of `most_m_per_s` at most. The trial's force bends the spring by 0.6 of `most_m`; it is
 /// softer where it would exceed 1/20 ms of the damper, or an eighth of the servo rate if that is less, which keeps it
 /// stable over the bus for any inertia; and where it would take more than half of the force limit at `most_m`.
+///
+/// Whatever the weight, the support may be wrong by the trial's force, and by a tenth of the force limit at most. Two
+/// arms share the trial's force and not their motors: what tries the larger one is all that a motor of the smaller one
+/// can give, and a support that may be wrong by so much is not judged at all.
 inline SupportCheck::Params with_holding_law(SupportCheck::Params asked, const HoldingSource& from, Seconds dt) {
-  constexpr double shortest_lag_s = 0.02, ticks_of_lag = 8.0, speed_share = 0.75, travel_share = 0.6, force_share = 0.5;
+  constexpr double shortest_lag_s = 0.02, ticks_of_lag = 8.0, speed_share = 0.75, travel_share = 0.6, force_share = 0.5,
+                   wrong_share = 0.1;
   const double lag_s = std::max(shortest_lag_s, ticks_of_lag * dt.value);
   const double for_trial = from.trial_force_N / (speed_share * asked.most_m_per_s);
   const double damping = std::min(std::max(from.own_damping_N_s_per_m, for_trial), from.damping_limit_N_s_per_m);
@@ -32,7 +37,8 @@ inline SupportCheck::Params with_holding_law(SupportCheck::Params asked, const H
   if (from.trial_force_N > 0.0) stiffness = std::min(stiffness, from.trial_force_N / (travel_share * asked.most_m));
   asked.stiffness_N_per_m = stiffness;
   asked.damping_N_s_per_m = damping;
-  asked.least_force_N = from.trial_force_N;
+  asked.trial_force_N = from.trial_force_N;
+  asked.least_force_N = std::min(from.trial_force_N, wrong_share * from.force_limit_N);
   return asked;
 }
 
@@ -44,8 +50,9 @@ inline SupportCheck::Params with_holding_law(SupportCheck::Params asked, const H
 /// quarters of `most_m`. A repeated one exceeds what rubs at the joint by little more than the friction itself. The
 /// trial is shortened, to 0.2 s at most, so that the force asked for goes no farther than half of `most_m`: friction
 /// that bears part of the weight makes each half go farther one way than back. It stays long enough for a quarter of
-/// that force to move `inertia` by `least_m`. That is a number of the model: where it is too large the trial is as long
-/// as was asked for, and where it is too small the joint may not move. Without damper all stays as it is.
+/// that force to move `inertia`, the largest of all poses, by `least_m`. That is a number of the model: where it is too
+/// large the trial is as long as was asked for, which makes the first force smaller, and where it is too small the
+/// joint may not move. Without damper all stays as it is.
 inline SignProbe::Params with_gentle_trial(SignProbe::Params asked, const SupportCheck::Params& held, double inertia) {
   constexpr double share = 0.75, share_of_repeated = 0.5, lobes = 5.0, shortest_s = 0.2;
   const double damping = held.damping_N_s_per_m;

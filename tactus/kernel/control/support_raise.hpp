@@ -83,7 +83,7 @@ class SupportRaiseOf {
                                                  .velocity_m_per_s = velocity_m_per_s,
                                                  .weight_N = weight_N,
                                                  .share = share_,
-                                                 .rises = share_ < 1.0,
+                                                 .rises = rises(),
                                                  .judged = counts,
                                                  .tried = snapshot.tried,
                                                  .elapsed_ticks = snapshot.elapsed_ticks});

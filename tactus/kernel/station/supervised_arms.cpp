@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/kernel/arm/largest_inertia.hpp>
 #include <tactus/kernel/arm_control/arm_sites.hpp>
 #include <tactus/kernel/control/protective_limits.hpp>
 #include <tactus/kernel/control/support_law.hpp>
@@ -109,9 +110,9 @@ void judge_support(const ArmTeleoperatorParams& params, const DescribedArms& arm
   const auto damping = own_damping(params, arms, leads);
   const DescribedArm& arm = leads ? arms.leader : arms.follower;
   const auto& chain = arm.arm.chain;
-  const auto model = arm::Chain::make(chain);
-  if (!model) return;  // the site reports what is wrong with it
-  const arm::JointVector inertia = model->mass_matrix(arm.start).diagonal();
+  if (!arm::Chain::make(chain)) return;  // the site reports what is wrong with it
+  // An arm may be armed at any pose: hanging, its shoulder has more than twice the inertia of an arm that is bent.
+  const arm::JointVector inertia = arm::largest_inertia(chain);
   for (std::size_t i = 0; i < damping.size(); ++i) {
     control::SignProbe::Params& probe = supervision[i].probe;
     supervision[i].support = control::with_holding_law(

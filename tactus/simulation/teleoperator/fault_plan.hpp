@@ -62,6 +62,8 @@ enum class FaultKind {
   emergency_stop,         ///< the operator presses the emergency stop
   power_lost,             ///< a motor's supply fails and comes back
   dead_man_released,      ///< the operator lets the dead-man switch go and holds on
+  slow_stop,              ///< the emergency stop is pressed where forces may grow slowly only
+  model_wrong,            ///< the model of an arm overstates its weight
 };
 constexpr auto enumerators(FaultKind) {
   return std::array{Enumerator{FaultKind::none, "none"},
@@ -113,7 +115,9 @@ constexpr auto enumerators(FaultKind) {
                     Enumerator{FaultKind::stale_commands, "stale-commands"},
                     Enumerator{FaultKind::emergency_stop, "emergency-stop"},
                     Enumerator{FaultKind::power_lost, "power-lost"},
-                    Enumerator{FaultKind::dead_man_released, "dead-man-released"}};
+                    Enumerator{FaultKind::dead_man_released, "dead-man-released"},
+                    Enumerator{FaultKind::slow_stop, "slow-stop"},
+                    Enumerator{FaultKind::model_wrong, "model-wrong"}};
 }
 
 enum class FaultSite { master, slave };

@@ -12,14 +12,15 @@ namespace tactus::simulation {
 /// that is for another part or site it is a sound one.
 ///
 /// One that is cooled poorly has a winding whose warmth follows the square of the force with the time constant below,
-/// 1 being as warm as it may become, at the force `size` for ever.
+/// 1 being as warm as it may become, at the force `size` for ever. One of a `slow_stop` whose `size` is above 0 lets
+/// its force fall no faster than `size` N/s.
 class FaultyActuator {
  public:
   /// Of a winding that is cooled poorly.
   static constexpr double winding_s = 10.0;
 
   FaultyActuator(const FaultPlan& plan, FaultSite site, double tick_s)
-      : plan_(plan), here_(plan.site == site), cools_(std::exp(-tick_s / winding_s)) {}
+      : plan_(plan), here_(plan.site == site), tick_s_(tick_s), cools_(std::exp(-tick_s / winding_s)) {}
 
   /// The force in N that the drive is made to give, from the commanded one; none where it is not `enabled`. Once
   /// a tick. Real-time safe.
@@ -27,6 +28,7 @@ class FaultyActuator {
     if (!moment.during) last_N_ = commanded_N;
     // An old command states that the drive is enabled, too.
     if (here_ && plan_.kind == FaultKind::stale_commands && moment.during) return obey_old(commanded_N, moment);
+    if (here_ && plan_.kind == FaultKind::slow_stop && plan_.size > 0.0 && moment.during) return follow(commanded_N);
     if (!enabled) return 0.0;
     if (!here_ || !moment.during) return commanded_N;
     switch (plan_.kind) {
@@ -56,6 +58,11 @@ class FaultyActuator {
   [[nodiscard]] double warmth() const noexcept { return warmth_; }
 
  private:
+  /// A drive that keeps its power until its force has fallen to zero, at the rate limit with which it may grow.
+  double follow(double commanded_N) noexcept {
+    const double most_N = plan_.size * tick_s_;
+    return last_N_ += std::clamp(commanded_N - last_N_, -most_N, most_N);
+  }
   /// A drive whose commands stay the same. It releases them once they are `size` s old.
   double obey_old(double commanded_N, const FaultMoment& moment) noexcept {
     if (moment.begins) last_N_ = commanded_N;
@@ -64,6 +71,7 @@ class FaultyActuator {
 
   FaultPlan plan_;
   bool here_;
+  double tick_s_;
   double last_N_ = 0.0;  ///< commanded before the fault
   double cools_;         ///< in a tick
   double warmth_ = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>
+#include <tactus/simulation/experiments/arm_faults/faulty_configuration.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -123,6 +124,39 @@ TEST(FaultsOfArms, AMotorThatIsReversedWhileItFollowsIsReleasedByTheWatchOfTheMo
       const std::string_view rule = broken_arm_rule(row, plan, run_arm_fault(bench, plan), params);
       EXPECT_EQ(rule.empty(), deviations > 0.0) << index << ": " << rule;
     }
+  }
+}
+
+/// The control of the judgement of gravity compensation: without it the same plan breaks a bound.
+TEST(FaultsOfArms, AModelThatOverstatesTheWeightIsReleasedBeforeAJointLeaps) {
+  ArmTappingParams params = arm_params();
+  const FaultRow row = arm_row("model-wrong");
+  const auto rule_of = [&](std::int64_t index) {
+    const ArmFaultBench bench = make_arm_fault_bench(params, folder).value();
+    return broken_arm_rule(row, draw_arm_plan(row, bench, index),
+                           run_arm_fault(bench, draw_arm_plan(row, bench, index)), params);
+  };
+  constexpr std::int64_t masses = 0, lengths = 5;
+  EXPECT_EQ(rule_of(masses), "");
+  EXPECT_EQ(rule_of(lengths), "");
+  params.rig.support.raise_s = 0.0;
+  EXPECT_NE(rule_of(masses), "");
+}
+
+/// The control of the comparison: sites that are told that they agree are armed with the same plans.
+TEST(FaultsOfArms, SitesThatDifferAreNotArmedAndNameTheKeyWithBothValues) {
+  const ArmFaultBench bench = arm_bench();
+  const FaultRow row = arm_row("configurations-differ");
+  for (std::size_t key = 0; key < FaultyArmConfiguration::keys.size(); ++key) {
+    FaultPlan plan = draw_arm_plan(row, bench, static_cast<std::int64_t>(key));
+    const FaultOutcome differs = run_arm_fault(bench, plan);
+    EXPECT_EQ(broken_arm_rule(row, plan, differs, bench.setup.params), "") << FaultyArmConfiguration::keys[key];
+    EXPECT_TRUE(differs.arms->named) << FaultyArmConfiguration::keys[key];
+    if (key > 1) continue;
+    plan.size = 1.0;
+    EXPECT_EQ(broken_arm_rule(row, plan, run_arm_fault(bench, plan), bench.setup.params),
+              "armed although the sites differ")
+        << FaultyArmConfiguration::keys[key];
   }
 }
 

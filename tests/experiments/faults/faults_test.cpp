@@ -301,7 +301,7 @@ TEST(ImpairedLink, LosesTheShareOfGilbertAndElliottAndInBurstsOfTheirMeanLength)
 /// A judge that finds nothing wrong must be one that would.
 TEST(FaultWitnesses, SeeWhatTheyAreThereFor) {
   FaultOutcome outcome;
-  ForceWitness force(2.0, 500.0, 1e-3);
+  ForceWitness force(2.0, 500.0, 0.25, 1e-3);
   for (const double force_N : {0.5, 1.0, 1.500001, 1.4}) force.see(force_N, false, outcome);
   EXPECT_EQ(outcome.steps_above_rate, 1);
   force.see(std::numeric_limits<double>::quiet_NaN(), false, outcome);
@@ -309,6 +309,12 @@ TEST(FaultWitnesses, SeeWhatTheyAreThereFor) {
   for (const double force_N : {1.8, 2.1}) force.see(force_N, false, outcome);
   EXPECT_EQ(outcome.forces_above_limit, 1);
   EXPECT_EQ(outcome.peak_force_N, 2.1);
+  FaultOutcome stops;
+  ForceWitness slow(2.0, 0.5, 0.25, 1e-3);
+  for (const double force_N : {0.0005, 0.001, 0.0, -0.0005}) slow.see(force_N, false, stops);
+  EXPECT_EQ(stops.steps_above_rate, 0) << "a stop falls within its time";
+  for (const double force_N : {-0.001, 0.0004, 0.002}) slow.see(force_N, false, stops);
+  EXPECT_EQ(stops.steps_above_rate, 2) << "what is beyond zero, and what grows, keeps the rate limit";
 
   PacketWitness packets(0.01, 1e-3);
   for (std::int64_t i = 1; i <= 30; ++i) packets.sent({.session = 9, .sequence = i}, i);

@@ -40,11 +40,14 @@ class FaultyArm {
         sent(packets.longest_age_s, tick_s),
         commanded(gates.size(), {.enabled = false}),
         driven_(commanded),
-        gates_(gates) {
+        gates_(gates),
+        stands_(plan.kind != FaultKind::model_wrong),
+        began_at_(arm.plant().link_position()) {
     // The law is entered in another order than the gate does: the last digits.
     constexpr double rounding = 1.0 + 1e-9;
     for (std::size_t i = 0; i < gates.size(); ++i) {
-      motors_.emplace_back(rounding * gates[i].force_limit_N, rounding * gates[i].rate_limit_N_per_s, tick_s);
+      motors_.emplace_back(rounding * gates[i].force_limit_N, rounding * gates[i].rate_limit_N_per_s,
+                           gates[i].stop_time_s, tick_s);
       friction_N_m_.push_back(described.arm.chain.joints[i].friction.coulomb_N_m);
     }
   }
@@ -142,6 +145,14 @@ class FaultyArm {
     }
     return share;
   }
+  /// How far and how fast the joints go from where the arm lay, until its site released them.
+  void leaps(ArmHarm& harm) {
+    for (const auto& gate : site.site().gates()) released_ = released_ || gate.motor().has_released();
+    if (!has_power() || released_) return;
+    harm.had_power = true;
+    harm.moved_rad = std::max(harm.moved_rad, (arm.plant().link_position() - began_at_).cwiseAbs().maxCoeff());
+    harm.leapt_rad_per_s = std::max(harm.leapt_rad_per_s, arm.plant().link_velocity().cwiseAbs().maxCoeff());
+  }
   /// Whether a joint is farther than so many times the position limit of its gate.
   [[nodiscard]] bool is_beyond(double factor) const {
     const arm::JointVector position = arm.plant().link_position();
@@ -199,7 +210,9 @@ class FaultyArm {
   double step_N_ = 0.0;
   double unheard_s_ = 0.0;
   double carried_s_ = 0.0;  ///< since its drives have power
-  bool stands_ = true;
+  bool stands_;
+  bool released_ = false;  ///< by its gates, once
+  arm::JointVector began_at_;
   double stood_m_ = 0.0, had_power_m_ = 0.0;  ///< where the tool was
 };
 
@@ -227,7 +240,11 @@ struct ArmFaultWay {
 
   template <class Take>
   void receive(const station::Tick&, Take&& take) noexcept {
-    here.process.hand_over(tick_s, take);
+    here.process.hand_over(tick_s, [&](control::JointPacket packet) {
+      // A control blinds the site to what differs.
+      if (injection.hides_disagreement()) packet.agreement = here.site.agreement().own().excerpt(packet.sequence);
+      take(packet);
+    });
   }
   void send(const control::JointPacket& packet, const station::Tick& tick) noexcept {
     here.sent.sent(packet, tick.number);

@@ -46,6 +46,10 @@ class ArmFaultInjection {
 
   /// No packet passes either way.
   [[nodiscard]] bool cuts() const noexcept { return plan_.kind == FaultKind::cut && moment_.during; }
+  /// A control: sites that differ are told that they do not.
+  [[nodiscard]] bool hides_disagreement() const noexcept {
+    return plan_.kind == FaultKind::configurations_differ && plan_.size == 1.0;
+  }
   /// A drive of `site` has no power, and states it.
   [[nodiscard]] bool is_without_power(FaultSite site) const noexcept {
     return plan_.kind == FaultKind::power_lost && plan_.site == site && moment_.during;

@@ -16,6 +16,11 @@ constexpr double longest_arm_cut_s = 1.0;
 constexpr double most_spike_rad = 3.0;
 /// How long arms are watched to which nothing happens.
 constexpr double clean_s = 3.0;
+/// By which the lengths of a URDF are too large: centimetres and millimetres in half of the plans.
+double drawn_length_factor(std::int64_t index, signal::Random& random) {
+  const double drawn = fault_families::between_logarithms(random, 2.0, 1000.0);
+  return index % 8 == 1 ? 100.0 : index % 8 == 3 ? 1000.0 : drawn;
+}
 
 }  // namespace
 
@@ -25,7 +30,7 @@ FaultPlan draw_arm_plan(FaultKind kind, std::int64_t index, std::int64_t seed, c
   signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(20);
   const double sign = random.uniform() < 0.5 ? -1.0 : 1.0;
   // On one axis some wiring is always wrong from the start.
-  if (is_wired_so(plan)) plan.start_s = random.uniform(0.7, 1.7);
+  if (is_there_at_start(plan)) plan.start_s = random.uniform(0.7, 1.7);
   // Half of all faults begin where the person presses most.
   if (random.uniform() < 0.5) {
     const double moving_s = plan.start_s - fault_schedule::still_until_s;
@@ -53,6 +58,15 @@ FaultPlan draw_arm_plan(FaultKind kind, std::int64_t index, std::int64_t seed, c
     case FaultKind::encoder_reversed:
       plan.start_s = index % 2 == 0 ? 0.0 : plan.start_s;
       plan.length_s = is_wired_so(plan) ? wired_s : 1.0;
+      break;
+    case FaultKind::configurations_differ:
+      plan.start_s = 0.0;
+      break;
+    case FaultKind::model_wrong:
+      plan.start_s = 0.0;
+      plan.length_s = wired_s;
+      plan.size = is_of_lengths(plan) ? drawn_length_factor(index, random)
+                                      : fault_families::between_logarithms(random, 1.5, 10.0);
       break;
     default:
       break;
@@ -109,9 +123,14 @@ std::vector<FaultRow> arm_fault_rows(std::string_view only) {
        "no site active at once"},
       {FaultKind::emergency_stop, "emergency-stop", "emergency stop", "pressed at one site for 0.5 s",
        "no site active at once, no torque"},
+      {FaultKind::configurations_differ, "configurations-differ", "configurations differ",
+       "the tool, a gate of [rig], the time-out, the gain, the gripper or the URDF", "never armed, the key is named"},
+      {FaultKind::model_wrong, "model-wrong", "URDF overstates the weight",
+       "masses 1.5 to 10 times, or lengths 2 to 1000 times", "no power, or released before a joint leaps"},
   };
   for (FaultRow& row : rows) {
-    row.resumes = row.kind != FaultKind::encoder_reversed && row.kind != FaultKind::motor_reversed;
+    row.resumes = row.kind != FaultKind::encoder_reversed && row.kind != FaultKind::motor_reversed &&
+                  row.kind != FaultKind::configurations_differ && row.kind != FaultKind::model_wrong;
   }
   if (!only.empty()) std::erase_if(rows, [only](const FaultRow& row) { return row.id != only; });
   return rows;

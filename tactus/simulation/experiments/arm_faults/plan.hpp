@@ -22,8 +22,14 @@ namespace tactus::experiments {
 /// at.
 FaultPlan draw_arm_plan(FaultKind kind, std::int64_t index, std::int64_t seed, const control::SafetyGate::Params& gate,
                         double rate_Hz, double wired_s);
-/// Whether a plan is about what was wired wrongly before anybody armed.
-inline bool is_wired_so(const FaultPlan& plan) { return plan.start_s == 0.0; }
+/// Whether what a plan is about was there before anybody armed.
+inline bool is_there_at_start(const FaultPlan& plan) { return plan.start_s == 0.0; }
+/// Whether motors are tried and gravity compensation is judged: what is wrong is wired so, or in the model.
+inline bool is_wired_so(const FaultPlan& plan) {
+  return is_there_at_start(plan) && plan.kind != FaultKind::configurations_differ;
+}
+/// Whether a wrong model has too large lengths; else it has too large masses. By `size`.
+inline bool is_of_lengths(const FaultPlan& plan) { return plan.choice % 2 == 1; }
 /// The joint, from 0, that a plan is about, of so many.
 std::size_t joint_of_plan(const FaultPlan& plan, std::size_t joints);
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/kernel/control/agreed_parameters.hpp>
+#include <tactus/kernel/core/binding.hpp>
 #include <tactus/kernel/station/step.hpp>
+#include <tactus/kernel/station/watched_arm.hpp>
 #include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/simulation/experiments/arm_faults/arm_operator.hpp>
 #include <tactus/simulation/experiments/arm_faults/faulty_arm.hpp>
+#include <tactus/simulation/experiments/arm_faults/faulty_configuration.hpp>
 #include <tactus/simulation/experiments/arm_faults/injection.hpp>
 #include <tactus/simulation/experiments/faults/judge.hpp>
 #include <tactus/simulation/experiments/faults/schedule.hpp>
@@ -22,14 +26,83 @@ constexpr double released_torque_share = 0.05;
 /// How far a joint may coast beyond where its gate latches a fault, as a factor.
 constexpr double joint_coasting = 1.1;
 
+/// The arm on a rest that bears it where it is: no joint gives way to its weight.
+arm_plants::ArmDevice on_a_rest(const arm_plants::ArmDevice& arm, arm_plants::ArmPlant::Params made) {
+  const arm::JointVector at = arm.plant().link_position(), bearing = arm.plant().bearing_torque();
+  for (std::size_t i = 0; i < made.chain.joints.size(); ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    auto& limits = made.chain.joints[i].limits;
+    (bearing[joint] > 0.0 ? limits.lower_rad : limits.upper_rad) = at[joint];
+  }
+  return {*arm_plants::ArmPlant::make(made, at), arm.limits()};
+}
+
+/// Where an arm is before anybody arms it. What a wrong model makes of one is seen only where it can go up.
+arm_plants::ArmDevice lies(const arm_plants::ArmDevice& arm, const arm_plants::ArmPlant::Params& made,
+                           const FaultPlan& plan) {
+  return plan.kind == FaultKind::model_wrong ? on_a_rest(arm, made) : arm;
+}
+
+/// What the programs of both sites have, and both starts of their sites.
+struct Programs {
+  FaultyArmConfiguration leader, follower;
+  arm_control::MotorWatch leader_watch, follower_watch;
+  station::SupervisedArms first, again;
+};
+
+control::Agreement agreement_of(station::AgreedArms agreed) {
+  std::vector<Binding> values;
+  append_bindings(agreed, {}, values);
+  return control::agreement_of(values);
+}
+
+/// Errors: those of the sites, which no program starts then.
+Result<Programs> programs_of(const ArmFaultBench& bench, const FaultPlan& plan) {
+  const FaultyArmConfiguration leader(bench.setup, plan, FaultSite::master),
+      follower(bench.setup, plan, FaultSite::slave);
+  const auto starts = [&](std::int64_t session) -> Result<station::SupervisedArms> {
+    station::ArmSiteStart start{.session = session,
+                                .agreement = agreement_of(leader.agreed()),
+                                .tries_motors = is_wired_so(plan),
+                                .judges_support = is_wired_so(plan)};
+    auto leads = station::arm_leader_site(leader.params, leader.arms, bench.leader_limits, start);
+    if (!leads) return leads.error();
+    start.session = session + 1;
+    start.agreement = agreement_of(follower.agreed());
+    auto follows = station::arm_follower_site(follower.params, follower.arms, bench.follower_limits, start);
+    if (!follows) return follows.error();
+    return station::SupervisedArms{*std::move(leads), *std::move(follows)};
+  };
+  auto first = starts(1), again = starts(3);
+  if (!first) return first.error();
+  const auto leader_watch = station::motor_watch(leader.params, leader.arms.leader),
+             follower_watch = station::motor_watch(follower.params, follower.arms.follower);
+  if (!leader_watch) return leader_watch.error();
+  if (!follower_watch) return follower_watch.error();
+  return Programs{leader, follower, *leader_watch, *follower_watch, *std::move(first), *std::move(again)};
+}
+
+/// Whether what a site received of the other's parameters names the key in which the plan makes them differ.
+template <class Site>
+bool names_key(const Site& site, const FaultyArmConfiguration& own, const FaultPlan& plan) {
+  station::AgreedArms agreed = own.agreed();
+  std::vector<Binding> values;
+  append_bindings(agreed, {}, values);
+  const auto named = control::first_disagreement(site.agreement(), values);
+  return named && named->key == FaultyArmConfiguration::keys[FaultyArmConfiguration::key_of(plan)] &&
+         named->own != named->other;
+}
+
 }  // namespace
 
 /// One plan, tick by tick.
 class ArmFaultRun {
  public:
-  ArmFaultRun(const ArmFaultBench& bench, const FaultPlan& plan, station::SupervisedArms first,
-              station::SupervisedArms again)
-      : rig_(bench.setup.params.rig),
+  ArmFaultRun(const ArmFaultBench& bench, const FaultPlan& plan, Programs programs)
+      : plan_(plan),
+        of_leader_(programs.leader),
+        of_follower_(programs.follower),
+        rig_(bench.setup.params.rig),
         held_leader_(bench.held_leader()),
         follower_arm_(bench.setup.follower.arm),
         tries_motors_(is_wired_so(plan)),
@@ -39,11 +112,12 @@ class ArmFaultRun {
         injections_{ArmFaultInjection(plan, bench.leader_gates.size(), tick_s_)},
         person_(bench, plan),
         wall_(person_.wall()),
-        leader_(FaultSite::master, std::move(first.leader), std::move(again.leader), bench.leader, bench.leader_gates,
-                bench.setup.leader, bench.leader_watch, plan, rig_.supervision.packets, tick_s_),
-        follower_(FaultSite::slave, std::move(first.follower), std::move(again.follower), bench.follower,
-                  bench.follower_gates, bench.setup.follower, bench.follower_watch, plan, rig_.supervision.packets,
-                  tick_s_),
+        leader_(FaultSite::master, std::move(programs.first.leader), std::move(programs.again.leader),
+                lies(bench.leader, held_leader_, plan), bench.leader_gates, bench.setup.leader, programs.leader_watch,
+                plan, rig_.supervision.packets, tick_s_),
+        follower_(FaultSite::slave, std::move(programs.first.follower), std::move(programs.again.follower),
+                  lies(bench.follower, follower_arm_, plan), bench.follower_gates, bench.setup.follower,
+                  programs.follower_watch, plan, rig_.supervision.packets, tick_s_),
         judge_({0.0, 0.0, released_torque_share * rig_.leader_gate.force_limit_N, tick_s_},
                {0.0, 0.0, released_torque_share * rig_.follower_gate.force_limit_N, tick_s_}, tick_s_),
         ticks_(std::lround((end_s() + fault_schedule::end_after_s) / tick_s_)) {
@@ -59,6 +133,10 @@ class ArmFaultRun {
       step_site(follower_, leader_);
       judge();
       advance();
+    }
+    if (plan_.kind == FaultKind::configurations_differ) {
+      outcome_.arms->named =
+          names_key(leader_.site, of_leader_, plan_) && names_key(follower_.site, of_follower_, plan_);
     }
     return outcome_;
   }
@@ -112,6 +190,7 @@ class ArmFaultRun {
     const bool tried = tries_motors_ && here.site.state() == control::SiteState::armed;
     const auto sunk = here.sinks(tool.position_m.z(), !tried && (here.where == FaultSite::slave || nobody_holds()));
     ArmHarm& harm = *outcome_.arms;
+    if (plan_.kind == FaultKind::model_wrong) here.leaps(harm);
     if (seen) {
       harm.fastest_joint_share = std::max(harm.fastest_joint_share, here.fastest_joint_share());
       harm.sank_m = std::max(harm.sank_m, sunk.carried_m);
@@ -147,6 +226,8 @@ class ArmFaultRun {
     }
   }
 
+  FaultPlan plan_;
+  FaultyArmConfiguration of_leader_, of_follower_;
   ArmRigParams rig_;
   arm_plants::ArmPlant::Params held_leader_, follower_arm_;
   bool tries_motors_;
@@ -166,14 +247,11 @@ class ArmFaultRun {
 };
 
 FaultOutcome run_arm_fault(const ArmFaultBench& bench, const FaultPlan& plan) {
-  const auto started = [&](std::int64_t session) {
-    return *station::supervise_arms(bench.setup.params, bench.setup, bench.leader_limits, bench.follower_limits,
-                                    {.leader_session = session,
-                                     .follower_session = session + 1,
-                                     .tries_motors = is_wired_so(plan),
-                                     .judges_support = is_wired_so(plan)});
-  };
-  return ArmFaultRun(bench, plan, started(1), started(3)).run();
+  auto programs = programs_of(bench, plan);
+  if (programs) return ArmFaultRun(bench, plan, *std::move(programs)).run();
+  FaultOutcome refused;
+  refused.arms.emplace();
+  return refused;
 }
 
 }  // namespace tactus::experiments

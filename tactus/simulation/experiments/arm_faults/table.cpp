@@ -34,10 +34,24 @@ Joints<station::DeviceLimits> limits_of(const DescribedArm& described, const Arm
   return limits;
 }
 
+std::string_view broken_by_model(const FaultOutcome& outcome) {
+  // Of standards for people next to robots none states what an arm may do before it is armed: these are what a hand
+  // that rests on it bears without a start.
+  constexpr double most_rad = 0.03, most_rad_per_s = 0.5;
+  const ArmHarm& arms = *outcome.arms;
+  if (outcome.active_in_fault) return "followed though the model is wrong";
+  if (arms.moved_rad > most_rad || arms.leapt_rad_per_s > most_rad_per_s) return "a joint leapt";
+  return arms.had_power && outcome.detection_ticks < 0 ? "not detected" : "";
+}
+
 std::string_view broken_by_arms(const FaultPlan& plan, const FaultOutcome& outcome, const ArmTappingParams& params) {
   const ArmHarm& arms = *outcome.arms;
   if (arms.fastest_joint_share > control::SafetyGate::fault_factor) return "a joint faster than its gate lets it be";
   if (arms.sank_m > params.faults.bounds.sank_m) return "an arm sank that was to be carried";
+  if (plan.kind == FaultKind::configurations_differ) {
+    return outcome.active_in_fault ? "armed although the sites differ" : arms.named ? "" : "the key was not named";
+  }
+  if (plan.kind == FaultKind::model_wrong) return broken_by_model(outcome);
   if (!is_wired_so(plan)) return {};
   if (outcome.active_in_fault) return "followed though a joint was wired wrongly";
   return outcome.detection_ticks < 0 ? "not detected" : "";
@@ -108,7 +122,7 @@ FaultPlan draw_arm_plan(const FaultRow& row, const ArmFaultBench& bench, std::in
 std::string_view broken_arm_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
                                  const ArmTappingParams& params) {
   if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
-  if (!is_wired_so(plan) && !outcome.became_active) return "did not follow before";
+  if (!is_there_at_start(plan) && !outcome.became_active) return "did not follow before";
   if (row.resumes && !outcome.active_at_end) return not_resumed;
   const auto& bounds = params.faults.bounds;
   if (const auto bound = broken_bound(outcome, bounds, bounds.release_s); !bound.empty()) return bound;

@@ -50,6 +50,15 @@ std::string_view wrong_sign(const FaultPlan& plan, const FaultOutcome& outcome, 
 std::string_view cool(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
   return outcome.winding_warmth <= 1.0 ? "" : "a winding was damaged";
 }
+/// A stop takes its stated time, whatever the rate limit is with which forces grow.
+std::string_view stopped_in_time(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
+  if (const auto rule = broken_duty(plan, outcome, params); !rule.empty()) return rule;
+  const SiteHarm& pressed = plan.site == FaultSite::master ? outcome.master : outcome.slave;
+  const control::SafetyGate::Params& gate =
+      plan.site == FaultSite::master ? params.control.gate : params.control.slave_gate;
+  const double longest_s = gate.stop_time_s + grace_ticks / params.servo.rate_Hz;
+  return pressed.release_s <= longest_s ? "" : "a motor pressed on after the stop";
+}
 void tries_motors(simulation::Teleoperator::Params& of) {
   of.control.supervision.probe = {.force_N = 0.5, .duration_s = 0.08, .least_m = 1.5e-4, .most_m = 0.005};
 }
@@ -60,6 +69,12 @@ void feels_as_it_is(simulation::Teleoperator::Params& of) { of.control.force_gai
 /// A workspace not much larger than the task.
 void works_close(simulation::Teleoperator::Params& of) {
   of.control.gate.position_limit_m = of.control.slave_gate.position_limit_m = 0.06;
+}
+
+/// As a careful owner may choose it: from nothing to half a newton takes a second.
+constexpr double slow_N_per_s = 0.5, grows_for_s = 3.0;
+void grows_slowly(simulation::Teleoperator::Params& of) {
+  of.control.gate.rate_limit_N_per_s = of.control.slave_gate.rate_limit_N_per_s = slow_N_per_s;
 }
 
 constexpr double out_of_reach_N = 200.0;
@@ -102,6 +117,7 @@ void without_limits(simulation::Teleoperator::Params& of, FaultPlan& plan) {
   of.master.amplifier.limit_N = of.slave.amplifier.limit_N = 100.0;
 }
 void with_pedal(simulation::Teleoperator::Params&, FaultPlan& plan) { plan.size = 1.0; }
+void falls_slowly(simulation::Teleoperator::Params&, FaultPlan& plan) { plan.size = slow_N_per_s; }
 void without_button(simulation::Teleoperator::Params&, FaultPlan& plan) { plan.kind = FaultKind::none; }
 
 constexpr FaultControl balance{"balance of forces, frozen-encoder check", without_balance},
@@ -178,6 +194,14 @@ std::vector<FaultRow> device_rows() {
        "no site active at once, no force",
        broken_duty,
        {"the button's wire", without_button}},
+      {FaultKind::slow_stop,
+       "slow-stop",
+       "stop at a low rate limit",
+       "the emergency stop at one site where forces may grow by 0.5 N/s",
+       "no force after stop_time_s",
+       stopped_in_time,
+       {"the limit of the fall: it falls as slowly as it grew", falls_slowly},
+       grows_slowly},
       {FaultKind::power_lost, "power-lost", "power lost", "of a motor for 100 to 500 ms",
        "hold; no jump when it comes back", comes_back, signs, feels_as_it_is},
   };
@@ -261,6 +285,10 @@ void draw_device(FaultPlan& plan, signal::Random& random, double sign) {
       break;
     case FaultKind::emergency_stop:
       plan.length_s = 0.5;
+      break;
+    case FaultKind::slow_stop:
+      plan.start_s += grows_for_s;
+      plan.length_s = 1.0;
       break;
     case FaultKind::power_lost:
       plan.length_s = between_logarithms(random, 0.1, 0.5);

@@ -177,6 +177,7 @@ FaultDuty duty_of(const FaultPlan& plan, const control::SupervisionParams& super
     case FaultKind::hand_lets_go:
     case FaultKind::dead_man_released:
     case FaultKind::emergency_stop:
+    case FaultKind::slow_stop:
       return {.kind = Kind::stops, .within_s = grace_s, .seen = Seen::from_one_to_the_other, .by_packets = true};
     case FaultKind::encoder_spike:
     case FaultKind::encoder_wrap:

@@ -77,6 +77,7 @@ class FaultOperator {
       case FaultKind::delay_asymmetric:
       case FaultKind::delay_creeping:
       case FaultKind::actuator_hot:
+      case FaultKind::slow_stop:
         return Task::leans;
       case FaultKind::torque_constant:
       case FaultKind::actuator_dead:

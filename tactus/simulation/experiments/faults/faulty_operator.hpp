@@ -20,7 +20,9 @@ class FaultyOperator {
   /// What holds the handle. Once a tick. Real-time safe.
   [[nodiscard]] Hand hand(const FaultMoment& moment) const noexcept {
     if (!moment.during) return Hand::holds;
-    if (plan_.kind == FaultKind::hand_lets_go || stuck_in_use()) return Hand::lets_go;
+    // Nobody touches an arm that is armed for the first time: a hand would bear what its model has too much.
+    const bool away = plan_.kind == FaultKind::hand_lets_go || plan_.kind == FaultKind::model_wrong || stuck_in_use();
+    if (away) return Hand::lets_go;
     return plan_.kind == FaultKind::handle_clamped ? Hand::is_clamped : Hand::holds;
   }
   /// A handle that moved while the hand was away is taken where it is and led back to the path: what is left, at a
@@ -42,7 +44,8 @@ class FaultyOperator {
         plan_.kind == FaultKind::dead_man_released || (plan_.kind == FaultKind::hand_lets_go && plan_.size == 0.0);
     const bool cleared = moment.since_s > plan_.length_s + fault_schedule::clear_after_s;
     if (in_handle && !moment.before && !cleared) pressed.dead_man = false;
-    if (plan_.kind == FaultKind::emergency_stop && moment.during && plan_.site == site) pressed.emergency_stop = true;
+    const bool is_stopped = plan_.kind == FaultKind::emergency_stop || plan_.kind == FaultKind::slow_stop;
+    if (is_stopped && moment.during && plan_.site == site) pressed.emergency_stop = true;
     switch (plan_.kind) {
       case FaultKind::dead_man_stuck:
         if (moment.during && plan_.size == 0.0) pressed.dead_man = true;

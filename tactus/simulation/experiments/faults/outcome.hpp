@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tactus/kernel/arm/units.hpp>
 #include <tactus/kernel/core/signals.hpp>
 
 #include <cstdint>
@@ -43,6 +44,10 @@ struct ArmHarm {
   double fastest_joint_share = 0.0;
   double sank_m = 0.0;
   double fell_m = 0.0;
+  double moved_rad = 0.0;
+  double leapt_rad_per_s = 0.0;
+  bool had_power = false;  ///< either arm
+  bool named = false;      ///< of sites that differ: the key, with both values
   static constexpr auto signals() {
     return List{
         observed("fastest_joint_share", &ArmHarm::fastest_joint_share, units::none, "", "", "",
@@ -51,7 +56,11 @@ struct ArmHarm {
                  "How far a tool that nobody holds sank while its site promised gravity compensation and did not "
                  "follow."),
         observed("fell_m", &ArmHarm::fell_m, units::metre, "", "", "down",
-                 "How far a tool went down once its drives had no power.")};
+                 "How far a tool went down once its drives had no power."),
+        observed("moved_rad", &ArmHarm::moved_rad, arm::units::radian, "", "", "",
+                 "Where the model is wrong: farthest of a joint from where it lay until its site released it."),
+        observed("leapt_rad_per_s", &ArmHarm::leapt_rad_per_s, arm::units::radian_per_second, "", "", "",
+                 "Where the model is wrong: fastest of a joint until then.")};
   }
 };
 

@@ -50,9 +50,9 @@ class FaultRun::Run {
         handle_(params.person.grip),
         master_(std::move(master)),
         slave_(std::move(slave)),
-        at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
-        at_handle_(params.control.handle_gate.force_limit_N, params.control.handle_gate.rate_limit_N_per_s, tick_s_),
-        at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
+        at_master_(witness_of(params.control.gate, tick_s_)),
+        at_handle_(witness_of(params.control.handle_gate, tick_s_)),
+        at_slave_(witness_of(params.control.slave_gate, tick_s_)),
         judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N, tick_s_},
                {params.environment.position_m, params.control.position_scale * person.depth_m(),
                 released_share * params.control.slave_gate.force_limit_N, tick_s_},
@@ -64,6 +64,9 @@ class FaultRun::Run {
     slave_.sent.expect(slave_.restarted.size() + 1, ticks_);
   }
 
+  static ForceWitness witness_of(const auto& gate, double tick_s) {
+    return {gate.force_limit_N, gate.rate_limit_N_per_s, gate.stop_time_s, tick_s};
+  }
   static std::vector<FaultInjection> injections_of(const FaultPlan& plan, double tick_s) {
     std::vector<FaultInjection> injections;
     for (const FaultPlan& part : plans_of(plan)) injections.emplace_back(part, tick_s);

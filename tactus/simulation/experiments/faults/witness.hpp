@@ -16,8 +16,12 @@ namespace tactus::experiments {
 /// Watches the force at one motor. It knows the limits from the file and nothing of the gate.
 class ForceWitness {
  public:
-  ForceWitness(double limit_N, double rate_N_per_s, double tick_s)
-      : limit_N_(limit_N), most_N_(rate_N_per_s * tick_s) {}
+  /// A stop may be faster than the rate limit: a force may fall to zero, and not beyond, as fast as the largest one
+  /// does within `stop_time_s`.
+  ForceWitness(double limit_N, double rate_N_per_s, double stop_time_s, double tick_s)
+      : limit_N_(limit_N),
+        most_N_(rate_N_per_s * tick_s),
+        most_fall_N_(std::max(most_N_, limit_N / stop_time_s * tick_s)) {}
 
   /// The force of this tick; `excused` where a process just died or started, which no gate can smooth.
   void see(double force_N, bool excused, FaultOutcome& outcome) {
@@ -27,7 +31,8 @@ class ForceWitness {
     }
     step_N_ = excused ? 0.0 : std::fabs(force_N - before_N_);
     // A difference of two sums of steps: the last digits of the largest force.
-    if (step_N_ > most_N_ + 1e-12 * limit_N_) ++outcome.steps_above_rate;
+    const bool falls = std::fabs(force_N) <= std::fabs(before_N_) && force_N * before_N_ >= 0.0;
+    if (step_N_ > (falls ? most_fall_N_ : most_N_) + 1e-12 * limit_N_) ++outcome.steps_above_rate;
     if (std::fabs(force_N) > limit_N_) ++outcome.forces_above_limit;
     outcome.peak_force_N = std::max(outcome.peak_force_N, std::fabs(force_N));
     before_N_ = force_N;
@@ -37,6 +42,7 @@ class ForceWitness {
  private:
   double limit_N_;
   double most_N_;
+  double most_fall_N_;
   double before_N_ = 0.0;
   double step_N_ = 0.0;
 };
