@@ -43,7 +43,7 @@ class ServoValve {
           field("rated_flow_m3_per_s", &Params::rated_flow_m3_per_s, units::cubic_metre_per_second, positive,
                 "Flow through the open valve at the rated drop."),
           field("rated_drop_Pa", &Params::rated_drop_Pa, units::pascal, positive,
-                "Pressure drop of the rated flow, both edges together."),
+                "Pressure drop at the rated flow, over both edges together."),
           field("natural_frequency_Hz", &Params::natural_frequency_Hz, units::hertz, positive,
                 "Natural frequency of the spool."),
           field("damping_ratio", &Params::damping_ratio, units::none, between(0.05, 2.0),

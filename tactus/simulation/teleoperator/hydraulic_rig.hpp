@@ -24,7 +24,7 @@ struct ValveCurrentModelParams {
     return List{
         field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere, positive,
               "K_a: the stall force divided by the current that opens the valve fully."),
-        field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s, as weighed."),
+        field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s: moving mass, as weighed."),
         field("force_filter_s", &P::force_filter_s, units::second, non_negative, "T_f: low-pass on command and force."),
         field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative,
               "T_d: low-pass on velocity.")};
@@ -41,7 +41,7 @@ struct HydraulicRigParams {
     using P = HydraulicRigParams;
     return List{field("slave", &P::slave, "Valve, cylinder and sensors."),
                 field("controller_gain_mA_per_m", &P::controller_gain_mA_per_m, units::milliampere_per_metre, positive,
-                      "K_c: current for one metre of error; the valve's rating limits it."),
+                      "K_c: current for one metre of error; the current is limited to the valve's rated current."),
                 field("model", &P::model, "The inverse model."), field("servo", &P::servo, "The servo clock."),
                 field("plant", &P::plant, "The clock of the simulated slave.")};
   }

@@ -81,7 +81,7 @@ class PositionForceMaster {
                 "receives the force at the slave; below half the servo rate. 0 is off."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_model", &Params::cancellation_model,
-                "Parts of master and hand that the model of cancellation distinguishes."),
+                "Masses, springs and friction of master and hand that the model of cancellation contains."),
           field("cancellation_step", &Params::cancellation_step, "Integration method of the model of cancellation."),
           field("cancellation_friction", &Params::cancellation_friction,
                 "Velocity on which the Coulomb friction of the sixth-order model acts."),

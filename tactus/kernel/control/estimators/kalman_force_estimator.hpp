@@ -35,7 +35,7 @@ class KalmanForceEstimator {
           field("force_walk_N", &Params::force_walk_N, units::newton, positive,
                 "q: standard deviation of the change of the force within a second."),
           field("model_noise_N", &Params::model_noise_N, units::newton, positive,
-                "w: error of the model as white noise of the force; standard deviation of its mean over a second."),
+                "w: standard deviation of the model's force error, taken as white noise and averaged over a second."),
           field("position_noise_m", &Params::position_noise_m, units::metre, positive,
                 "r: standard deviation of the noise of the measured position.")};
     }

@@ -87,7 +87,7 @@ struct ForceDisplayControl {
   control::MasterModel model;
   static constexpr auto fields() {
     return List{field("cancellation_model", &ForceDisplayControl::cancellation_model,
-                      "Parts of master and hand that the model distinguishes."),
+                      "Masses, springs and friction of master and hand that the model contains."),
                 field("cancellation_step", &ForceDisplayControl::cancellation_step, "Integration method of the model."),
                 field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }

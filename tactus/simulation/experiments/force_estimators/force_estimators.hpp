@@ -64,8 +64,8 @@ struct ForceEstimatorsParams {
                 field("servo", &Params::servo, "The servo clock."),
                 field("plant", &Params::plant, "The clock of the simulated plant."),
                 field("inverse_model", &Params::inverse_model,
-                      "The inverse model. It runs without prediction and with each kind of prediction; the key kind "
-                      "has no effect."),
+                      "The inverse model. It runs without prediction and with each kind of prediction; "
+                      "inverse_model.prediction.kind has no effect."),
                 field("disturbance_observer", &Params::disturbance_observer, "The disturbance observer."),
                 field("momentum_observer", &Params::momentum_observer, "The momentum observer."),
                 field("kalman", &Params::kalman, "The Kalman filter."),

@@ -52,7 +52,7 @@ struct HydraulicMasterParams {
   static constexpr auto fields() {
     using P = HydraulicMasterParams;
     return List{field("mass_kg", &P::mass_kg, units::kilogram, positive, "Mass of master and hand."),
-                field("hand", &P::hand, "The arm.")};
+                field("hand", &P::hand, "The operator's arm.")};
   }
 };
 
