@@ -13,7 +13,7 @@ namespace tactus::station {
 /// file: those with which both compute, and the limits and time-outs on which an operator at one site relies at the
 /// other. `control::agreement_of` makes the agreement of their bindings.
 struct AgreedArms {
-  std::string leader, follower;  ///< digests of what is believed of the arms
+  std::string leader, follower;  ///< digests of the arms' models
   ToolPoint leader_tool, follower_tool;
   double rate_Hz = 0.0;
   ArmControlParams control;
@@ -27,24 +27,24 @@ struct AgreedArms {
     using P = AgreedArms;
     return List{
         field("arm", &P::leader, "Dynamics of the leader."),
-        field("arm.follower", &P::follower, "The same of the follower."),
-        field("arm.tool", &P::leader_tool, "Where the leader's hand is."),
-        field("arm.follower.tool", &P::follower_tool, "Where the follower touches."),
+        field("arm.follower", &P::follower, "Dynamics of the follower."),
+        field("arm.tool", &P::leader_tool, "Point of the leader that the operator holds."),
+        field("arm.follower.tool", &P::follower_tool, "Point of the follower that touches the surface."),
         field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Control cycles per second, equal at both sites."),
-        field("control", &P::control, "Each site takes the other to be its half."),
-        field("rig.leader_gate", &P::leader_gate, "What the leader's motors do at most."),
-        field("rig.follower_gate", &P::follower_gate, "What the follower's motors do at most."),
-        field("rig.gripper", &P::gripper, "Both ends of a spring between the sites."),
-        field("rig.supervision.packets", &P::packets, "What a site accepts of the other."),
-        field("rig.supervision.silence", &P::silence, "What a site does in silence."),
-        field("rig.supervision.watchdog", &P::watchdog, "When it holds."),
-        field("rig.supervision.answer_within_s", &P::answer_within_s, units::second, positive,
-              "When an arming is given up."),
-        field("rig.supervision.blend_s", &P::blend_s, units::second, positive, "How a force comes and goes.")};
+        field("control", &P::control, "Controllers of both sites."),
+        field("rig.leader_gate", &P::leader_gate, "Limits of the leader's motors."),
+        field("rig.follower_gate", &P::follower_gate, "Limits of the follower's motors."),
+        field("rig.gripper", &P::gripper, "Coupling of the grippers."),
+        field("rig.supervision.packets", &P::packets, "Which packets a site accepts."),
+        field("rig.supervision.silence", &P::silence, "Reaction to missing packets."),
+        field("rig.supervision.watchdog", &P::watchdog, "Timeout after which a site holds."),
+        field("rig.supervision.answer_within_s", &P::answer_within_s, units::second, positive, "Timeout of arming."),
+        field("rig.supervision.blend_s", &P::blend_s, units::second, positive,
+              "Time in which the coupling fades in and out.")};
   }
 };
 
-/// Of an experiment with arms, and of what is believed of them. Allocates.
+/// The agreed parameters of an experiment with arms, from its file and the models of the arms. Allocates.
 AgreedArms agreed_arms(const ArmTeleoperatorParams& params, const DescribedArms& arms);
 
 }  // namespace tactus::station
