@@ -38,7 +38,8 @@ class MessageFollower {
           field("decay_s", &Params::decay_s, units::second, positive_up_to(1.0),
                 "Time constant with which velocity, force and wave decay after that."),
           field("catch_up_m_per_s", &Params::catch_up_m_per_s, units::metre_per_second, positive_up_to(10.0),
-                "Largest speed at which the followed position closes a gap, in addition to the received motion."),
+                "Largest speed, in addition to the received motion, at which the site's copy of the received position "
+                "catches up after a gap."),
           field("catch_up_N_per_s", &Params::catch_up_N_per_s, units::newton_per_second, positive_up_to(1e5),
                 "The same for a received force; also for a velocity in m/s per s, and for a wave in square roots of "
                 "watts per s.")};

@@ -60,8 +60,8 @@ struct SupervisionParams {
         field("probe", &SupervisionParams::probe, "The force that tests the sign of a site's motor on arming."),
         field("hold", &SupervisionParams::hold, "The force when the site holds."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
-              "Share by which the other site's clock may run slower or faster before the site holds; above the share "
-              "of control cycles that it may miss."),
+              "Share by which the other site's clock may run slower or faster before this site goes to hold; must be "
+              "greater than the share of control cycles that the other site may miss."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field("answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
