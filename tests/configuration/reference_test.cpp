@@ -175,13 +175,13 @@ TEST(Reference, WhatAnotherPageSaysIsLeftToIt) {
   const std::string page = reference_beside<StifferExperiment, testing::Experiment>("Stiffer", "soft");
   EXPECT_EQ(page, R"(# Stiffer
 
-As in [`soft`](soft.md), with the same defaults: `[slave.velocity_filter]`, `[control]`, `[task]`.
+Same as in [`soft`](soft.md), with the same defaults: `[slave.velocity_filter]`, `[control]`, `[task]`.
 
 | Key | Unit | Bounds | Default | Meaning |
 |---|---|---|---|---|
 | `stay_s` | s | > 0 | `1.0` | How long it stays. |
 
-As in [`soft`](soft.md): `duration_s`.
+Same as in [`soft`](soft.md): `duration_s`.
 
 ## `[slave]`
 
@@ -191,7 +191,7 @@ The slave.
 |---|---|---|---|---|
 | `stiffness_N_per_m` | N/m | ≥ 0 | `5000.0` | Stiffness. |
 
-As in [`soft`](soft.md): `mass_kg`, `offset_m`.
+Same as in [`soft`](soft.md): `mass_kg`, `offset_m`.
 )");
 }
 

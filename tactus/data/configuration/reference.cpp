@@ -161,7 +161,7 @@ std::string text_of(const ShownSection& section, const ShownSection& other, std:
     }
   }
   if (!table.empty()) text += "\n| Key | Unit | Bounds | Default | Meaning |\n|---|---|---|---|---|\n" + table;
-  if (!there.empty()) text += concat({"\nAs in [`", other_kind, "`](", other_kind, ".md): ", there, ".\n"});
+  if (!there.empty()) text += concat({"\nSame as in [`", other_kind, "`](", other_kind, ".md): ", there, ".\n"});
   return text;
 }
 
@@ -192,14 +192,15 @@ std::string reference_markdown(std::span<const Binding> bindings, std::string_vi
     const bool nothing_new = same != others.end() && std::all_of(section.rows.begin(), section.rows.end(),
                                                                  [&](const auto& text) { return same->has(text); });
     if (!section.path.empty() && nothing_new && !section.rows.empty()) {
-      add_word(equal_roots, "the keys of `[", section.path, "]` itself");
+      add_word(equal_roots, "the keys directly under `[", section.path, "]`");
       continue;
     }
     tables += text_of(section, same != others.end() ? *same : ShownSection{}, other.kind);
   }
   std::string page = concat({"# ", title, "\n"});
   if (!equal_roots.empty()) {
-    page += concat({"\nAs in [`", other.kind, "`](", other.kind, ".md), with the same defaults: ", equal_roots, ".\n"});
+    page += concat(
+        {"\nSame as in [`", other.kind, "`](", other.kind, ".md), with the same defaults: ", equal_roots, ".\n"});
   }
   return page + tables;
 }

@@ -28,7 +28,8 @@ struct CancellationFile {
                 "How much detail of master and hand the model of cancellation has."),
           field("cancellation_step", &Control::cancellation_step, "Integration method of the model of cancellation."),
           field("cancellation_friction", &Control::cancellation_friction,
-                "Velocity on which the Coulomb friction of the sixth-order model acts.")};
+                "Velocity from which the sixth-order model computes its Coulomb friction: induced motion only "
+                "(at-rest), or with the intended motion (total-velocity).")};
     }
   };
   Control control;

@@ -36,12 +36,13 @@ class MessageFollower {
           field("extrapolation_s", &Params::extrapolation_s, units::second, between(0.0, 0.1),
                 "Time without packets during which the other site is assumed to continue as before."),
           field("decay_s", &Params::decay_s, units::second, positive_up_to(1.0),
-                "Time constant with which velocity, force and wave decay after that."),
+                "Time constant with which velocity, force and wave decay after extrapolation_s."),
           field("catch_up_m_per_s", &Params::catch_up_m_per_s, units::metre_per_second, positive_up_to(10.0),
-                "Largest speed at which the followed position closes a gap, in addition to the received motion."),
+                "Largest speed, in addition to the received motion, at which the site's copy of the received position "
+                "catches up after a gap."),
           field("catch_up_N_per_s", &Params::catch_up_N_per_s, units::newton_per_second, positive_up_to(1e5),
-                "The same for a received force; also for a velocity in m/s per s, and for a wave in square roots of "
-                "watts per s.")};
+                "As catch_up_m_per_s, for a received force; also for a received velocity in m/s per s, and for a "
+                "received wave in square roots of watts per s.")};
     }
   };
   struct Input {

@@ -48,14 +48,15 @@ class MotionCheck {
     static constexpr auto fields() {
       return List{
           field("disagreement_m", &Params::disagreement_m, units::metre, positive_up_to(0.1),
-                "Largest difference between the travel of the measured position and that of the reported velocity."),
+                "Largest difference between the change of the measured position and the integral of the reported "
+                "velocity."),
           field("velocity_error_m_per_s", &Params::velocity_error_m_per_s, units::metre_per_second, positive_up_to(1.0),
-                "Tolerated lasting error of the reported velocity; at least its step."),
+                "Tolerated lasting error of the reported velocity; at least velocity_step_m_per_s."),
           field("lag_s", &Params::lag_s, units::second, positive_up_to(0.1),
                 "Delay with which the drive reports a change of its velocity."),
           field("velocity_step_m_per_s", &Params::velocity_step_m_per_s, units::metre_per_second, between(0.0, 10.0),
-                "Step of the velocity that the drive reports; a device that reports a velocity states its own. 0: the "
-                "drive reports no velocity, and there is no check.")};
+                "Resolution of the velocity that the drive reports. A device whose drives report a velocity sets this "
+                "value itself. 0: the drive reports no velocity, and there is no check.")};
     }
   };
   struct Input {

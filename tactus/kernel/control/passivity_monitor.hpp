@@ -37,7 +37,8 @@ class PassivityMonitor {
           field("damp_above_J", &Params::damp_above_J, units::joule, positive_up_to(100.0),
                 "Delivered energy above which the motor is damped."),
           field("hold_above_J", &Params::hold_above_J, units::joule, positive_up_to(200.0),
-                "Delivered energy above which the motor only damps until it is armed again; above damp_above_J."),
+                "Delivered energy above which the motor only damps until it is armed again; must be greater than "
+                "damp_above_J."),
           field("credit_J", &Params::credit_J, units::joule, between(0.0, 100.0),
                 "Largest credit for energy that the motor has absorbed before."),
           field("drain_W", &Params::drain_W, units::watt, between(0.0, 50.0),

@@ -31,13 +31,14 @@ class ReversalCheck {
     double lasting_s = 0.01;
     static constexpr auto fields() {
       return List{field("force_N", &Params::force_N, units::newton, positive_up_to(200.0),
-                        "Net force (motor force minus the resistance that a sensor measures) against which the device "
-                        "must not gain speed; above friction and the error of the sensor."),
+                        "Net force (motor force minus the resistance that a sensor measures) from which the check "
+                        "takes effect: while it opposes the motion, the device must not gain speed. Must be greater "
+                        "than friction and the error of the sensor."),
                   field("gained_m_per_s", &Params::gained_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                        "Gain of speed against this force that is a fault."),
+                        "Increase of speed against this force that is reported as a fault."),
                   field("lasting_s", &Params::lasting_s, units::second, positive_up_to(1.0),
-                        "Time for which the force must have opposed the motion before a gain of speed counts; longer "
-                        "than the delays of amplifier and sensors.")};
+                        "Time for which the force must oppose the motion before an increase of speed counts; must be "
+                        "longer than the delays of amplifier and sensors.")};
     }
   };
   struct Input {

@@ -56,8 +56,9 @@ class SafetyGate {
           field("velocity_limit_m_per_s", &Params::velocity_limit_m_per_s, units::metre_per_second,
                 positive_up_to(100.0),
                 "Speed above which no force may accelerate the motion; 1.25 times this speed is a fault."),
-          field("position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
-                "Distance from zero beyond which no force may increase it; 1.25 times this distance is a fault."),
+          field(
+              "position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
+              "Distance from zero beyond which no force may increase the distance; 1.25 times this limit is a fault."),
           field("stop_time_s", &Params::stop_time_s, units::second, positive_up_to(longest_stop_s), stop_time_doc),
           field("encoder", &Params::encoder, "Check of the measured position."),
           field("motion", &Params::motion,

@@ -60,13 +60,14 @@ struct SupervisionParams {
         field("probe", &SupervisionParams::probe, "The force that tests the sign of a site's motor on arming."),
         field("hold", &SupervisionParams::hold, "The force when the site holds."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
-              "Share by which the other site's clock may run slower or faster before the site holds. It must exceed "
-              "the share of control cycles that the other site may miss."),
+              "Share by which the other site's clock may run slower or faster before this site goes to hold; must be "
+              "greater than the share of control cycles that the other site may miss."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field("answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
-              "Time within which the slave must confirm an arming, otherwise the master holds. Longer than the round "
-              "trip; with a sign probe longer than the round trip, blend_s and all trials of the probe together."),
+              "Time within which the slave must confirm an arming, otherwise the master goes to hold. Must be longer "
+              "than the round trip; if a sign probe is set, longer than the sum of the round trip, blend_s and all "
+              "trials of the probe."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "Time in which a force ramps in when a site becomes active, and ramps out when it stops.")};
   }

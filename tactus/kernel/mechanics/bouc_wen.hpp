@@ -72,8 +72,8 @@ class BoucWenSpring {
     static constexpr auto fields() {
       return List{
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                "Average stiffness: tip-to-tip slope of a closed loop of the reference deflection (the master's "
-                "linkage: 3950, paper A, Table I)."),
+                "Average stiffness: slope of the line between the two end points of the closed force-deflection loop "
+                "at the reference deflection (the master's linkage: 3950, paper A, Table I)."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
                 "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),

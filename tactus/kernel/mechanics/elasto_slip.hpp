@@ -66,14 +66,15 @@ class ElastoSlipSpring {
     static constexpr auto fields() {
       return List{
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                "Average stiffness: tip-to-tip slope of a closed loop of the reference deflection (the master's "
-                "linkage: 3950, paper A, Table I)."),
+                "Average stiffness: slope of the line between the two end points of the closed force-deflection loop "
+                "at the reference deflection (the master's linkage: 3950, paper A, Table I)."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
                 "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
-                "Share of the small-deflection stiffness that is lost when all elements slip; 0 is a linear spring."),
+                "Share of the small-deflection stiffness that is lost when all friction elements slip; 0 is a linear "
+                "spring."),
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,
-                "Deflection from rest at which the last of the four elements begins to slip."),
+                "Deflection from rest at which the last of the spring's four friction elements begins to slip."),
           field("reference_deflection_m", &Params::reference_deflection_m, units::metre, positive,
                 "Amplitude of the closed loop that the average stiffness refers to (1 N on the master's linkage).")};
     }

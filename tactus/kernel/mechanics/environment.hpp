@@ -42,9 +42,9 @@ class Environment {
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, between(0.0, 1e4),
                 "Viscous damping of the wall (not with Hunt-Crossley)."),
           field("exponent", &Params::exponent, units::none, between(1.0, 2.5),
-                "Exponent of the growth of the force with depth (Hunt-Crossley only)."),
+                "Exponent of the force as a function of depth (Hunt-Crossley only)."),
           field("dissipation_s_per_m", &Params::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
-                "Relative growth of the force with the rate of depth (Hunt-Crossley only).")};
+                "Relative increase of the force per rate of penetration (Hunt-Crossley only).")};
     }
   };
   /// The tip as the wall sees it.

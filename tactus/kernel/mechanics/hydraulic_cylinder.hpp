@@ -68,8 +68,9 @@ class HydraulicCylinder {
           field("second_area_m2", &Params::second_area_m2, units::square_metre, positive,
                 "Piston area of the other chamber."),
           field("stroke_m", &Params::stroke_m, units::metre, positive, "Distance between the end stops."),
-          field("dead_volume_m3", &Params::dead_volume_m3, units::cubic_metre, positive,
-                "Volume of oil in a chamber, hose and valve when the piston is at its end."),
+          field(
+              "dead_volume_m3", &Params::dead_volume_m3, units::cubic_metre, positive,
+              "Volume of oil in a chamber with its hose and valve when the piston is at the end stop of this chamber."),
           field("bulk_modulus_Pa", &Params::bulk_modulus_Pa, units::pascal, positive,
                 "Effective bulk modulus of the oil."),
           field("leakage_m3_per_s_per_Pa", &Params::leakage_m3_per_s_per_Pa, units::cubic_metre_per_second_per_pascal,

@@ -42,8 +42,8 @@ class PredictionBlock {
       return List{field("time_constant_s", &Params::time_constant_s, units::second, positive_up_to(10.0),
                         "Tp: time by which the block predicts at low frequency."),
                   field("discretisation", &Params::discretisation,
-                        "tustin keeps the block's lead at low frequency and its gain at high frequency; exact is exact "
-                        "for an input held between samples.")};
+                        "tustin keeps the lead at low frequency and the gain at high frequency of the continuous "
+                        "block; exact is exact for an input that is constant between samples.")};
     }
   };
   using Input = double;

@@ -41,7 +41,7 @@ struct HydraulicRigParams {
     using P = HydraulicRigParams;
     return List{field("slave", &P::slave, "Valve, cylinder and sensors."),
                 field("controller_gain_mA_per_m", &P::controller_gain_mA_per_m, units::milliampere_per_metre, positive,
-                      "K_c: current for one metre of error; the current is limited to the valve's rated current."),
+                      "K_c: current for one metre of error; the current is limited to the rated current of the valve."),
                 field("model", &P::model, "The inverse model."), field("servo", &P::servo, "The servo clock."),
                 field("plant", &P::plant, "The clock of the simulated slave.")};
   }

@@ -48,7 +48,7 @@ class EnergyTank {
                         "Damping with which the master draws energy when its tank is empty; it decreases linearly to "
                         "zero at the desired level."),
                   field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                        "Highest speed of the motor, including one encoder step per control cycle."),
+                        "Highest speed at which the motor can move, plus one encoder step per control cycle."),
                   field("velocity", &Params::velocity, "Filter of the velocity for the damping that draws energy.")};
     }
   };

@@ -43,9 +43,9 @@ struct FourChannelParams {
     return List{
         field("master", &FourChannelParams::master, "The master's position controller: C_m, and C_4 without inertia."),
         field("environment_force_gain", &FourChannelParams::environment_force_gain, units::none, between(0.0, 1000.0),
-              "C_2 divided by the force gain; transparent at 1 + master_force_loop_gain."),
+              "C_2 divided by the force gain; for transparency set 1 + master_force_loop_gain."),
         field("hand_force_gain", &FourChannelParams::hand_force_gain, units::none, between(0.0, 1000.0),
-              "C_3 times the force gain; transparent at 1 + slave_force_loop_gain."),
+              "C_3 times the force gain; for transparency set 1 + slave_force_loop_gain."),
         field("slave_force_loop_gain", &FourChannelParams::slave_force_loop_gain, units::none, between(-1.0, 100.0),
               "C_5, local force loop: the slave yields to 1 + C_5 times the tip force."),
         field("master_force_loop_gain", &FourChannelParams::master_force_loop_gain, units::none, between(-1.0, 100.0),

@@ -81,10 +81,11 @@ class PositionForceMaster {
                 "receives the force at the slave; below half the servo rate. 0 is off."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_model", &Params::cancellation_model,
-                "Masses, springs and friction of master and hand that the model of cancellation contains."),
+                "Order of the model of cancellation: one, two or three masses; only sixth-order is nonlinear."),
           field("cancellation_step", &Params::cancellation_step, "Integration method of the model of cancellation."),
           field("cancellation_friction", &Params::cancellation_friction,
-                "Velocity on which the Coulomb friction of the sixth-order model acts."),
+                "Velocity from which the sixth-order model computes its Coulomb friction: induced motion only "
+                "(at-rest), or with the intended motion (total-velocity)."),
           field("operator_estimate", &Params::operator_estimate,
                 "Source of the firmness of the operator's grip for cancellation."),
           field("model", &Params::model, "The controller's model of master and hand."),

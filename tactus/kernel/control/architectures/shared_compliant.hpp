@@ -14,7 +14,7 @@ struct ComplianceParams {
   static constexpr auto fields() {
     return List{field("stiffness_N_per_m", &ComplianceParams::stiffness_N_per_m, units::newton_per_metre,
                       Bounds{.lower = 1.0, .upper = 1e6},
-                      "Tip force divided by the distance by which the slave's command yields at rest."),
+                      "Tip force divided by the distance by which the slave's command yields in the steady state."),
                 field("cutoff_Hz", &ComplianceParams::cutoff_Hz, units::hertz, positive,
                       "Low-pass on the tip force to which the command yields; below half the sample rate.")};
   }

@@ -33,16 +33,15 @@ struct WaveParams {
   double correction_time_s = 0.05;
   signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
   static constexpr auto fields() {
-    return List{
-        field(
-            "impedance_N_s_per_m", &WaveParams::impedance_N_s_per_m, units::newton_second_per_metre,
-            positive_up_to(1000.0),
-            "Wave impedance b, in the slave's scale; a larger value is stiffer in contact and heavier in free motion."),
-        field("cutoff_Hz", &WaveParams::cutoff_Hz, units::hertz, positive,
-              "Cutoff of the first-order low-pass of the arriving wave; below half the sample rate."),
-        field("correction_time_s", &WaveParams::correction_time_s, units::second, between(0.002, 10.0),
-              "Time constant with which a receiver corrects the position error that lost waves cause."),
-        field("velocity", &WaveParams::velocity, "Filter of the master's velocity.")};
+    return List{field("impedance_N_s_per_m", &WaveParams::impedance_N_s_per_m, units::newton_second_per_metre,
+                      positive_up_to(1000.0),
+                      "Wave impedance b, for force and velocity at the slave; a larger value feels stiffer in contact "
+                      "and heavier in free motion."),
+                field("cutoff_Hz", &WaveParams::cutoff_Hz, units::hertz, positive,
+                      "Cutoff of the first-order low-pass of the arriving wave; below half the sample rate."),
+                field("correction_time_s", &WaveParams::correction_time_s, units::second, between(0.002, 10.0),
+                      "Time constant with which a receiver corrects the position error that lost waves cause."),
+                field("velocity", &WaveParams::velocity, "Filter of the master's velocity.")};
   }
 };
 

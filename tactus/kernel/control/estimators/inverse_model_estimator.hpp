@@ -46,7 +46,7 @@ struct FrictionFunction {
         field("offset_N", &FrictionFunction::offset_N, units::newton, any_finite,
               "Constant force, independent of the motion."),
         field("velocity_scale_m_per_s", &FrictionFunction::velocity_scale_m_per_s, units::metre_per_second, positive,
-              "Velocity at which the argument r of the law is 1."),
+              "Velocity scale of the law: its argument is r = velocity / velocity_scale_m_per_s."),
         field("linear", &FrictionFunction::linear, units::none, non_negative, "Linear share of the sigmoid."),
         field("quadratic", &FrictionFunction::quadratic, units::none, non_negative, "Quadratic share of the sigmoid.")};
   }
@@ -93,7 +93,8 @@ class InverseModelEstimator {
     signal::Predictor::Params prediction;
     static constexpr auto fields() {
       return List{
-          field("form", &Params::form, "Keys that describe the linear model: mass-damping or rational."),
+          field("form", &Params::form,
+                "Form of the linear model: mass-damping (the keys marked so) or rational (the section plant)."),
           field("mass_kg", &Params::mass_kg, units::kilogram, non_negative, "Moving mass M (mass-damping)."),
           field("viscous_damping_N_s_per_m", &Params::viscous_damping_N_s_per_m, units::newton_second_per_metre,
                 non_negative, "Viscous damping h (mass-damping)."),
@@ -110,7 +111,7 @@ class InverseModelEstimator {
           field("declared_delay_s", &Params::declared_delay_s, units::second, non_negative,
                 "Sum of those delays and lags of actuator and sensor that prediction must compensate; 0: none."),
           field("prediction", &Params::prediction,
-                "Prediction of the measured position: by blocks or by one of their rivals.")};
+                "Prediction of the measured position, by blocks or by an alternative method.")};
     }
   };
   using Input = SlaveMotionSample;

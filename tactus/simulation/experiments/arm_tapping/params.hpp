@@ -42,9 +42,9 @@ struct ArmWallParams {
                 field("damping_N_s_per_m", &W::damping_N_s_per_m, units::newton_second_per_metre, between(0.0, 1e4),
                       "Damping of the surface (not with Hunt-Crossley)."),
                 field("exponent", &W::exponent, units::none, between(1.0, 2.5),
-                      "Exponent of the growth of the force with depth (Hunt-Crossley only)."),
+                      "Exponent of the force as a function of depth (Hunt-Crossley only)."),
                 field("dissipation_s_per_m", &W::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
-                      "Relative growth of the force with the rate of depth (Hunt-Crossley only).")};
+                      "Relative increase of the force per rate of penetration (Hunt-Crossley only).")};
   }
   /// The law along the depth, its surface at 0.
   [[nodiscard]] mechanics::Environment::Params environment() const noexcept {

@@ -32,7 +32,7 @@ struct HydraulicChirpTask {
               "First frequency of the chirp."),
         field("end_frequency_Hz", &P::end_frequency_Hz, units::hertz, between(0.01, 50.0),
               "Last frequency of the chirp."),
-        field("amplitude_m", &P::amplitude_m, units::metre, between(1e-4, 0.09), "Amplitude of the wanted position."),
+        field("amplitude_m", &P::amplitude_m, units::metre, between(1e-4, 0.09), "Amplitude of the desired position."),
         field("training_amplitude_m", &P::training_amplitude_m, units::metre, between(1e-4, 0.09),
               "Sum of the amplitudes of the sines from which the model is identified.")};
   }

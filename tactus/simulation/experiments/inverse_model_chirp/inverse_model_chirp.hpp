@@ -51,7 +51,8 @@ struct InverseModelChirpParams {
     return List{field("task", &P::task, "Trajectories and sampling."),
                 field("slave", &P::slave, "The simulated slave."),
                 field("estimator", &P::estimator,
-                      "Parameters of the inverse model; blocks and time constant are set by the experiment.")};
+                      "Parameters of the inverse model. The experiment itself sets the kind of prediction, the number "
+                      "of blocks, their time constant and declared_delay_s; the values in the file have no effect.")};
   }
 };
 
