@@ -80,9 +80,10 @@ def _computed_here(tasks: Sequence[Sequence[Any]]) -> Computed:
         yield number, _run_task(*task)
 
 
-def _computed_by(client: distributed.Client, tasks: Sequence[Sequence[Any]]) -> Computed:
-    from distributed import as_completed
+def _computed_by(client: Any, tasks: Sequence[Sequence[Any]]) -> Computed:
+    import distributed
 
+    as_completed: Any = distributed.as_completed  # it has no types
     # Not `pure`: a file may have another content than in an earlier sweep.
     futures = [client.submit(_run_task, *task, pure=False) for task in tasks]
     numbers = {future.key: number for number, future in enumerate(futures)}

@@ -22,7 +22,7 @@ TAPS = {"task.taps": 4}
 
 @contextlib.contextmanager
 def local_cluster():
-    """Two workers, each a process with one thread; a worker that dies is replaced."""
+    """A client of two workers, each a process with one thread."""
     import dask
     from distributed import Client, LocalCluster
 
@@ -30,14 +30,14 @@ def local_cluster():
         with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
             with Client(cluster) as client:
                 client.wait_for_workers(2)
-                yield cluster, client
+                yield client
 
 
 def values_of(found):
     return [(one.settings, one.values.to_dict()) for one in found]
 
 
-def kill_once(cluster, client, file, after_tasks, worker=0):
+def kill_once(client, file, after_tasks, worker=0):
     """Kills a worker once so many tasks are finished. Whether results are those of a sweep without Dask."""
     expected = values_of(tactus.sweep(file, VARY, set=TAPS))
     victims = list(client.run(os.getpid).values())
@@ -50,7 +50,6 @@ def kill_once(cluster, client, file, after_tasks, worker=0):
             os.kill(victims[worker], signal.SIGKILL)
 
     found = values_of(tactus.sweep(file, VARY, set=TAPS, client=client, progress=kill_in_time))
-    client.wait_for_workers(2)
     return bool(killed) and found == expected
 
 
@@ -61,12 +60,14 @@ def main():
     given = parser.parse_args()
     draw = random.Random(given.seed)
     equal = 0
-    with tempfile.TemporaryDirectory(prefix="tactus-sweep-") as folder, local_cluster() as (cluster, client):
+    with tempfile.TemporaryDirectory(prefix="tactus-sweep-") as folder:
         file = pathlib.Path(folder) / "quick.toml"
         file.write_text(QUICK, encoding="utf-8")
         for number in range(1, given.times + 1):
             after_tasks, worker = draw.randint(1, 14), draw.randrange(2)
-            same = kill_once(cluster, client, file, after_tasks, worker)
+            # A cluster of its own: Dask does not replace every killed worker (2022.12, on a busy machine).
+            with local_cluster() as client:
+                same = kill_once(client, file, after_tasks, worker)
             print(f"{number}: worker {worker} killed after {after_tasks} tasks, {'equal' if same else 'other'} results",
                   flush=True)
             equal += same

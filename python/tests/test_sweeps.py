@@ -36,8 +36,8 @@ class Sweeps(InAFolder):
     @needs_dask
     def test_a_killed_worker_changes_nothing(self):
         file = self.quick()
-        with local_cluster() as (cluster, client):
-            self.assertTrue(kill_once(cluster, client, file, after_tasks=2))
+        with local_cluster() as client:
+            self.assertTrue(kill_once(client, file, after_tasks=2))
             with self.assertRaisesRegex(tactus.RequestError, "control.force_gain"):
                 tactus.sweep(file, {"control.force_gain": [1e9]}, client=client)
 

@@ -13,6 +13,7 @@ tactus, scratch = sys.argv[1], Path(sys.argv[2])
 shutil.rmtree(scratch, ignore_errors=True)
 CASES = [("map", jobs.map_of_taps(tactus), (1, 2, 3, 8)),
          ("float", jobs.map_of_taps(tactus, "--precision", "float"), (3,)),
+         ("taps", jobs.taps(tactus), (3,)),
          ("contest", jobs.contest(tactus), (1, 2, 3, 8) if "--all" in sys.argv else (2,))]
 for name, job, counts in CASES:
     whole = scratch / name / "threads"

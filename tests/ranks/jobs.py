@@ -38,4 +38,10 @@ def contest(tactus):
     return Job(tactus, words, [])
 
 
-JOBS = {"map": map_of_taps, "contest": contest}
+def taps(tactus):
+    words = ["run", str(SOURCE / "experiments/tapping.toml"), "--set", "task.taps=6", "--set", "task.observation_s=0.2",
+             "--vary", "control.force_gain=1,3,5"]
+    return Job(tactus, words, [])
+
+
+JOBS = {"map": map_of_taps, "contest": contest, "taps": taps}

@@ -24,7 +24,8 @@ def refused(expected, *command, status=2):
 
 
 refused("cannot be shared by several processes", tactus, "diagnose", "recording.csv", "--out", str(out))
-refused("an experiment of kind tapping cannot be shared", tactus, "run", tapping, "--out", str(out))
+chirp = str(jobs.SOURCE / "experiments/inverse-model-chirp.toml")
+refused("an experiment of kind inverse-model-chirp cannot be shared", tactus, "run", chirp, "--out", str(out))
 refused("a run in real time cannot be shared", tactus, "run", tapping, "--realtime")
 refused("more than ten million points", *jobs.map_of_taps(tactus, "--vary", "task.grip=1:2:9999").to(out))
 

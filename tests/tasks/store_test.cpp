@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/kernel/core/version.hpp>
+#include <tactus/simulation/tasks/build.hpp>
 #include <tactus/simulation/tasks/store.hpp>
 
 #include <filesystem>
@@ -113,7 +114,21 @@ TEST_F(Store, AFileOfAnotherVersionIsRefusedWithBothVersions) {
                                                       "\xe5\x07\x42\x30",
                                                       20));
   const std::string refusal = found("one");
-  EXPECT_NE(refusal.find("of tactus 9.9.9, and this is " + std::string(version())), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("of tactus 9.9.9, and this is " + version_and_build()), std::string::npos) << refusal;
+}
+
+TEST_F(Store, AFileOfAnotherBuildIsOneOfAnotherVersion) {
+  const std::string build = version_and_build();
+  ASSERT_TRUE(build.starts_with(std::string(version()) + ", build ")) << build;
+  EXPECT_GE(build.size(), version().size() + 8 + 16) << build;
+  EXPECT_EQ(build.find_first_not_of("0123456789abcdef", version().size() + 8), std::string::npos) << build;
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(program), {}};
+  std::string bytes;
+  for (std::size_t i = version().size() + 8; i < build.size(); i += 2) {
+    bytes += static_cast<char>(std::stoi(build.substr(i, 2), nullptr, 16));
+  }
+  EXPECT_NE(content.find(std::string("GNU\0", 4) + bytes), std::string::npos) << "as the linker wrote it";
 }
 
 TEST_F(Store, AnyOtherFileIsRefusedAndStaysAsItIs) {

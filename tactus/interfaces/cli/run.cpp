@@ -20,6 +20,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -214,7 +215,9 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   if (options.observers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
 
   if ((*experiment)->has_tasks()) {
-    request->place = {.engine = engine_of_commands(), .folder = output->path()};
+    // A program that ends a command of its own finds nothing of it left.
+    const std::filesystem::path folder = is_in_process() ? "" : output->path();
+    request->place = {.engine = engine_of_commands(), .folder = folder};
   } else if (auto error = refuse_to_share("an experiment of kind " + std::string((*experiment)->kind()))) {
     return error;
   }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/mpi/ranks/internal/computing_thread.hpp>
 #include <tactus/mpi/ranks/internal/ranks.hpp>
 #include <tactus/simulation/tasks/bytes.hpp>
 
@@ -154,8 +153,15 @@ Check Session::Ranks::receive_ready(const Message& message, std::uint64_t job) {
 
 Check Session::Ranks::run(const tasks::Job& job, const tasks::TaskList& list, const tasks::Take& take,
                           const tasks::Progress& progress) {
-  const std::uint64_t hash = hash_of(job.description);
   ComputingThread own(job);
+  Check error = hand_out(hash_of(job.description), own, list, take, progress);
+  // The other ranks need not wait for the task that this one still runs.
+  if (error) finish();
+  return error;
+}
+
+Check Session::Ranks::hand_out(std::uint64_t job, ComputingThread& own, const tasks::TaskList& list,
+                               const tasks::Take& take, const tasks::Progress& progress) {
   std::size_t own_in_flight = 0;
   Hand hand(list);
   now_ = Clock::now();
@@ -172,7 +178,7 @@ Check Session::Ranks::run(const tasks::Job& job, const tasks::TaskList& list, co
       Rank& other = others_[static_cast<std::size_t>(message->rank)];
       other.silence.heard();
       if (message->kind == Kind::ready) {
-        if (auto error = receive_ready(*message, hash)) return error;
+        if (auto error = receive_ready(*message, job)) return error;
       } else if (message->kind == Kind::failed) {
         Error error = error_of(message->bytes);
         error.message = name_of(message->rank) + ": " + error.message;

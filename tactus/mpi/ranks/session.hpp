@@ -12,8 +12,8 @@
 /// which sleeps most of the time, exchanges messages.
 namespace tactus::ranks {
 
-/// How long a rank may send no message before the job ends. A rank sends a message at least every half second, also while it
-/// computes.
+/// How long a rank may send no message before the job ends. A rank sends a message at least every half second, also
+/// while it computes.
 inline constexpr double silence_limit_s = 6.0;
 
 /// MPI in this process, from `start` to `end`. One for each process.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/kernel/core/version.hpp>
+#include <tactus/simulation/tasks/build.hpp>
 #include <tactus/simulation/tasks/bytes.hpp>
 #include <tactus/simulation/tasks/store.hpp>
 
@@ -106,7 +106,8 @@ TaskStore::~TaskStore() {
 Check TaskStore::read_records(std::string_view description) {
   const off_t length = ::lseek(file_, 0, SEEK_END);
   if (length < 0) return unreadable(path_);
-  const std::string head = std::string(magic) + record_of(version(), description);
+  const std::string build = version_and_build();
+  const std::string head = std::string(magic) + record_of(build, description);
   std::string start(magic.size(), '\0');
   if (!read_at(file_, 0, start)) return unreadable(path_);
   if (start != magic.substr(0, start.size())) {
@@ -141,10 +142,10 @@ Check TaskStore::read_records(std::string_view description) {
     const std::string_view key = body.substr(0, record.key_length);
     if (described) {
       add(key, record);
-    } else if (key != version()) {
+    } else if (key != build) {
       return refused(path_, ErrorCode::inconsistent,
-                     "has finished tasks of tactus " + std::string(key) + ", and this is " + std::string(version()) +
-                         ": finish the job with that version, name another folder with --out, or remove this file");
+                     "has finished tasks of tactus " + std::string(key) + ", and this is " + build +
+                         ": finish the job with that one, name another folder with --out, or remove this file");
     } else if (body.substr(key.size()) != description) {
       return refused(path_, ErrorCode::inconsistent,
                      "has finished tasks of another job (other parameters, axes or precision): name another folder "

@@ -16,15 +16,16 @@ namespace tactus::tasks {
 
 /// Finished tasks of one job in a file, which only grows.
 ///
-/// The file starts with the words `tactus tasks 1`. Records follow, of which the first has the version of tactus as its
+/// The file starts with the words `tactus tasks 1`. Records follow, of which the first has `version_and_build` as its
 /// key and the description of the job as its value, and each further one the key and the value of a task. A record is
 /// two lengths of 32 bits, key, value, and the CRC-32 of all these, in the byte order of the machine. It is written at
 /// once, before the value is used. If the process is killed within a write, the last record does not match its
 /// checksum; `open` truncates the file before the first such record.
 class TaskStore {
  public:
-  /// Opens or makes the file and locks it. Errors: `inconsistent` for a file of another job or version, for a file that
-  /// does not start as above, and for one that another process has open; `missing` if it cannot be read; `unwritable`.
+  /// Opens or makes the file and locks it. Errors: `inconsistent` for a file of another job, version or build, for a
+  /// file that does not start as above, and for one that another process has open; `missing` if it cannot be read;
+  /// `unwritable`.
   static Result<TaskStore> open(const std::filesystem::path& file, std::string_view description);
   TaskStore(TaskStore&& other) noexcept;
   TaskStore& operator=(TaskStore&&) = delete;

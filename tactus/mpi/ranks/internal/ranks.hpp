@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tactus/mpi/ranks/internal/computing_thread.hpp>
 #include <tactus/mpi/ranks/internal/mailbox.hpp>
 #include <tactus/mpi/ranks/session.hpp>
 #include <tactus/simulation/tasks/engine.hpp>
@@ -56,6 +57,9 @@ class Session::Ranks final : public tasks::Engine {
   };
 
   [[nodiscard]] std::string name_of(int rank) const;
+  /// Runs the list of a job with this hash; `own` runs the tasks of this rank.
+  [[nodiscard]] Check hand_out(std::uint64_t job, ComputingThread& own, const tasks::TaskList& list,
+                               const tasks::Take& take, const tasks::Progress& progress);
   [[nodiscard]] Check receive_ready(const Message& message, std::uint64_t job);
   void stay_in_touch();
   void wait_for_end();
