@@ -13,7 +13,7 @@ namespace tactus::station {
 /// file: those with which both compute, and the limits and time-outs on which an operator at one site relies at the
 /// other. `control::agreement_of` makes the agreement of their bindings.
 struct AgreedArms {
-  std::string leader, follower;  ///< digests of what is believed of the arms
+  std::string leader, follower;  ///< digests of the model parameters of both arms
   ToolPoint leader_tool, follower_tool;
   double rate_Hz = 0.0;
   ArmControlParams control;
@@ -44,7 +44,7 @@ struct AgreedArms {
   }
 };
 
-/// Of an experiment with arms, and of what is believed of them. Allocates.
+/// Of an experiment with arms, and of the model parameters of its arms. Allocates.
 AgreedArms agreed_arms(const ArmTeleoperatorParams& params, const DescribedArms& arms);
 
 }  // namespace tactus::station

@@ -46,7 +46,7 @@ class ArmFaultInjection {
 
   /// No packet passes either way.
   [[nodiscard]] bool cuts() const noexcept { return plan_.kind == FaultKind::cut && moment_.during; }
-  /// A control: sites that differ are told that they do not.
+  /// A control: each site receives its own agreement in place of the other's.
   [[nodiscard]] bool hides_disagreement() const noexcept {
     return plan_.kind == FaultKind::configurations_differ && plan_.size == 1.0;
   }
