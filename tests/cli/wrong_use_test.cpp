@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -203,8 +204,19 @@ TEST_F(WrongUse, AFolderInThePlaceOfAResultLeavesTheOthersWhole) {
   const Outcome outcome = tactus({"run", quick_experiment(), "--out", "results"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("results/report.html"), std::string::npos) << outcome.err;
-  for (const std::string& file : files()) EXPECT_EQ(file.find(".partial"), std::string::npos) << file;
+  // The finished taps stay until the results are written; no half-written result does.
+  const auto partial = [this] {
+    std::vector<std::string> found;
+    for (const std::string& file : files()) {
+      if (file.find(".partial") != std::string::npos) found.push_back(file);
+    }
+    return found;
+  };
+  EXPECT_EQ(partial(), std::vector<std::string>{"results/tasks.partial"});
   EXPECT_TRUE(content("results/figure-1.svg").ends_with("</svg>\n"));
+  std::filesystem::remove(folder() / "results/report.html");
+  EXPECT_EQ(tactus({"run", quick_experiment(), "--out", "results", "--overwrite"}).status, 0);
+  EXPECT_EQ(partial(), std::vector<std::string>());
 }
 
 }  // namespace
