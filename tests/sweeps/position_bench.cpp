@@ -26,10 +26,8 @@ using control::SiteState;
 
 const std::filesystem::path rigs_folder = std::filesystem::path(TACTUS_SOURCE_FOLDER) / "examples/rigs";
 
-ShippedRig joint_by_joint(const char* rig_file, const char* experiment, const char* set = nullptr) {
-  auto document = Document::load(rigs_folder / experiment).value();
-  if (set != nullptr && document.set(set)) throw std::runtime_error(set);
-  const auto params = document.read<experiments::TappingParams>().value();
+ShippedRig joint_by_joint(const char* rig_file, const char* experiment) {
+  const auto params = Document::load(rigs_folder / experiment).value().read<experiments::TappingParams>().value();
   const auto rig = devices::Rig::load(rigs_folder / rig_file).value();
   const devices::RigPair& pair = rig.pairs().front();
   return {.name = rig_file,
@@ -81,11 +79,9 @@ devices::RigLoop loop_of(const ShippedRig& rig, runtime::SiteExchange& exchange,
 
 std::vector<ShippedRig> shipped_rigs() {
   std::vector<ShippedRig> rigs;
-  for (const char* file : {"openarm.toml", "yam.toml", "so101.toml"}) {
+  for (const char* file : {"openarm.toml", "yam.toml", "gello.toml", "so101.toml"}) {
     rigs.push_back(joint_by_joint(file, "joints.toml"));
   }
-  // As docs/how-to/gello.md has it: 0.002 rad is hardly more than a count of a servo.
-  rigs.push_back(joint_by_joint("gello.toml", "joints.toml", "control.supervision.probe.least_m=0.005"));
   rigs.push_back(joint_by_joint("inverse3.toml", "axes.toml"));
   rigs.push_back(as_arms("openarm-arms.toml", "arms.toml"));
   return rigs;

@@ -9,12 +9,14 @@
 
 namespace tactus::control {
 
-/// What the holding law of a joint follows from. None of it is a number of the device's model, which may be wrong.
+/// What the holding law of a joint follows from. None of it but the friction, which only widens a bound, is a number of
+/// the device's model, which may be wrong.
 struct HoldingSource {
   double own_damping_N_s_per_m = 0.0;    ///< that its drive runs while the site is coupled
   double damping_limit_N_s_per_m = 0.0;  ///< that it may run; 0: it runs no law
   double force_limit_N = 100.0;          ///< of the motor
   double trial_force_N = 0.0;            ///< with which the motor is tried; 0: it is not
+  double friction_N = 0.0;               ///< Coulomb, at the joint
 };
 
 /// `asked` with the holding law of a joint, which `SupportCheck` describes.
@@ -24,7 +26,8 @@ struct HoldingSource {
 /// softer where it would exceed 1/20 ms of the damper, or an eighth of the servo rate if that is less, which keeps it
 /// stable over the bus for any inertia; and where it would take more than half of the force limit at `most_m`.
 ///
-/// Whatever the weight, the support may be wrong by the trial's force, and by a tenth of the force limit at most. Two
+/// Whatever the weight, the support may be wrong by the trial's force, and by a tenth of the force limit and the
+/// friction, which keeps what a hand left in the spring, at most. Two
 /// arms share the trial's force and not their motors: what tries the larger one is all that a motor of the smaller one
 /// can give, and a support that may be wrong by so much is not judged at all.
 inline SupportCheck::Params with_holding_law(SupportCheck::Params asked, const HoldingSource& from, Seconds dt) {
@@ -38,7 +41,7 @@ inline SupportCheck::Params with_holding_law(SupportCheck::Params asked, const H
   asked.stiffness_N_per_m = stiffness;
   asked.damping_N_s_per_m = damping;
   asked.trial_force_N = from.trial_force_N;
-  asked.least_force_N = std::min(from.trial_force_N, wrong_share * from.force_limit_N);
+  asked.least_force_N = std::min(from.trial_force_N, wrong_share * from.force_limit_N + from.friction_N);
   return asked;
 }
 

@@ -124,7 +124,8 @@ void judge_support(const ArmTeleoperatorParams& params, const DescribedArms& arm
         {.own_damping_N_s_per_m = damping[i],
          .damping_limit_N_s_per_m = limits[i].damping_N_s_per_m,
          .force_limit_N = gates[i].force_limit_N,
-         .trial_force_N = std::max(probe.force_N, probe.most_force_N)},
+         .trial_force_N = std::max(probe.force_N, probe.most_force_N),
+         .friction_N = chain.joints[i].friction.coulomb_N_m},
         Seconds{1.0 / params.servo.rate_Hz});
     probe = control::with_gentle_trial(probe, supervision[i].support, inertia[static_cast<Eigen::Index>(i)]);
   }

@@ -43,6 +43,7 @@ class FaultyArm {
         gates_(gates),
         stands_(plan.kind != FaultKind::model_wrong),
         began_at_(arm.plant().link_position()) {
+    stood_m_ = had_power_m_ = arm.plant().tool().position_m.z();
     // The law is entered in another order than the gate does: the last digits.
     constexpr double rounding = 1.0 + 1e-9;
     for (std::size_t i = 0; i < gates.size(); ++i) {
