@@ -36,6 +36,15 @@ TEST_F(Stability, a_gain_beyond_the_limit_has_two_unstable_poles) {
   EXPECT_TRUE(found["phase_margin_rad"].is_null()) << "an unstable loop has no margins";
 }
 
+TEST_F(Stability, a_model_of_another_master_is_named) {
+  const std::string hint = "describe your device under [master] too";
+  EXPECT_EQ(tactus({"stability", "margins", tapping}).out.find(hint), std::string::npos);
+  const Outcome other = tactus({"stability", "margins", tapping, "--set", "control.model.motor.mass_kg=0.075"});
+  ASSERT_EQ(other.status, 0) << other.err;
+  EXPECT_NE(other.out.find("The model moves 0.0998 kg and [master] "), std::string::npos) << other.out;
+  EXPECT_NE(other.out.find(hint), std::string::npos);
+}
+
 TEST_F(Stability, the_limit_in_time_of_the_bonded_rig_stands_beside_the_linear_one) {
   const Outcome outcome =
       tactus({"stability", "limit", tapping, "--set", "control.cancellation=off", "--set", "task.taps=1", "--json"});

@@ -133,6 +133,20 @@ std::string verdict_of(const Analysis& analysis) {
   return (value("stable") > 0.0 ? "Stable" : "Unstable") + at + up_to;
 }
 
+/// Says so if the model is that of another master: the margins are those of `[master]`, whatever device was identified.
+std::string note_on_model(const experiments::TappingParams& params) {
+  constexpr double largest_ratio = 1.5;
+  const auto moving_kg = [](const auto& of, const auto& end) {
+    return of.motor.mass_kg + of.drum.mass_kg + end.mass_kg;
+  };
+  const double model_kg = moving_kg(params.control.model, params.control.model.handle);
+  const double master_kg = moving_kg(params.master.mechanism, params.master.mechanism.tip);
+  if (model_kg <= largest_ratio * master_kg && master_kg <= largest_ratio * model_kg) return {};
+  return " The model moves " + report::number(model_kg, 3) + " kg and [master] " + report::number(master_kg, 3) +
+         " kg: these figures are those of the master in [master]. If the model is that of your device, describe your "
+         "device under [master] too.";
+}
+
 report::Table pole_table(const Analysis& analysis) {
   report::Table table({{"magnitude"}, {"frequency", "Hz"}, {"decays with", "ms"}}, "Slowest closed-loop poles");
   for (const std::complex<double> pole : analysis.slowest) {
@@ -211,7 +225,7 @@ Result<experiments::Outcome> report_margins(const experiments::Request& request,
   const report::Table table = table_of(*analysis), slowest = pole_table(*analysis);
   std::vector<report::Figure> figures = figures_of(*analysis);
   report::Page page(request.name + ": stability margins");
-  const std::string said = verdict_of(*analysis);
+  const std::string said = verdict_of(*analysis) + note_on_model(*params);
   page.paragraph(said);
   page.paragraph(
       "The force that the slave feels moves the master's motor; what of that motion cancellation leaves goes to the "
