@@ -109,8 +109,9 @@ struct ArmControlParams : arm_control::ArmLeader::Params {
     return joined(arm_control::ArmLeader::Params::fields(),
                   List{field("follower", &ArmControlParams::follower, "The follower's site."),
                        field("tare", &ArmControlParams::tare,
-                             "With simulated taps alone: what both arms' gravity compensation lacks is found before "
-                             "the operator takes the leader.")});
+                             "What both arms' gravity compensation lacks is found: with simulated taps before the "
+                             "operator takes the leader, on a rig by the word tare, which averages two cycles if "
+                             "cycles is 0.")});
   }
 };
 
@@ -211,7 +212,7 @@ struct ArmTeleoperatorParams {
 /// Whether the follower is another arm than the leader.
 inline bool differs(const ArmPairParams& params) { return !params.follower.urdf.empty(); }
 
-/// Errors: `inconsistent`, under `control.tare.cycles`, for sites under supervision, which have no tare.
+/// Errors: `inconsistent`, under `control.tare.cycles`, for a run in which nobody can ask for a tare.
 Check refuse_tare(const ArmTeleoperatorParams& params);
 
 /// Errors: `inconsistent`, under `control.follower.coupling`, for a leader that leads the tool: `what` ("tactus
