@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
+#include <utility>
 
 #include "tests/allocation_counter.hpp"
 #include "tests/arm_control/arm_station_bench.hpp"
@@ -68,6 +69,35 @@ TEST(ArmsUnderSupervision, WithPassivePortsTheyFollowFeelContactAndCanBeArmedAne
     EXPECT_LT((leader_m - bench.follower.plant().tool().position_m).norm(), 5e-3) << name_of(port) << " follows again";
     EXPECT_TRUE(bench.sites.healthy());
   }
+}
+
+TEST(ArmsUnderSupervision, ATareMovesBothArmsAndAddsNothingWhereTheModelsAreRight) {
+  Bench bench;
+  bench.wall.point_m.z() -= 0.2;  // the tools move by centimetres
+  bench.couple();
+  bench.held = false;
+  bench.run(0.5, {});
+  const arm::Vector3 leader_m = bench.leader.plant().tool().position_m;
+  const arm::Vector3 follower_m = bench.follower.plant().tool().position_m;
+  const auto& master = bench.sites.master().site();
+  const auto& slave = bench.sites.slave().site();
+  bench.run(1.0, {.tare = true});
+  ASSERT_TRUE(bench.both(SiteState::armed));
+  EXPECT_EQ(master.tare().state, control::TareState::under_way);
+  EXPECT_EQ(slave.tare().state, control::TareState::under_way);
+  bench.most_step_N = 0.0;
+  bench.run(3.5, {.tare = true});
+  for (const auto& [report, found] :
+       {std::pair(master.tare(), master.tared_N()), std::pair(slave.tare(), slave.tared_N())}) {
+    EXPECT_EQ(report.state, control::TareState::done)
+        << name_of(report.state) << " of joint " << report.joint << ": " << report.value;
+    for (const double lacking_N_m : found) EXPECT_NEAR(lacking_N_m, 0.0, 0.05);
+  }
+  EXPECT_LT(bench.most_step_N, 0.5) << "no torque steps";
+  EXPECT_LT(fell_mm(bench.leader, leader_m), 10.0);
+  EXPECT_LT(fell_mm(bench.follower, follower_m), 5.0);
+  bench.run(0.5, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::active));
 }
 
 TEST(ArmsUnderSupervision, TheDeadManSwitchUncouplesTheLeaderAndDropsNeitherArm) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/kernel/arm_control/site_tare.hpp>
 #include <tactus/kernel/arm_control/tare.hpp>
 #include <tactus/kernel/arm_control/torque_bias.hpp>
 #include <tactus/kernel/arm_control/washed_damping.hpp>
@@ -55,6 +56,68 @@ TEST(Tare, RefusesWhatIsOutOfBounds) {
   const JointVector none = JointVector::Zero(7);
   EXPECT_EQ(Tare::make({.cycles = 1, .amplitude_rad = 0.0}, model, {none, none}, tick).error().parameter,
             "amplitude_rad");
+}
+
+/// A tare of an arm whose joints follow exactly, and whose drives report gravity and `more`.
+SiteTare site_tare(const arm::Chain& model) {
+  const JointVector none = JointVector::Zero(7);
+  return *SiteTare::make({}, arm_plants::openarm_class().chain, model, {none, none}, none, tick);
+}
+void run(SiteTare& tare, const arm::Chain& model, const JointVector& more, double follows, int ticks) {
+  const JointVector at = arm_plants::bent();
+  double away_rad = 0.0;
+  for (int i = 0; i < ticks; ++i) {
+    const JointVector position = at + JointVector::Constant(7, follows * away_rad);
+    if (tare.moves()) {
+      away_rad = tare.away_rad(
+          {.position = position, .velocity = JointVector::Zero(7), .torque = model.gravity_torque(position) + more});
+    }
+    tare.lacking_N_m();
+  }
+}
+
+TEST(SiteTare, BringsInWhatItFoundWithoutAStepAndKeepsItWhenStopped) {
+  const arm::Chain model = *arm::Chain::make(arm_plants::openarm_class().chain);
+  JointVector more = JointVector::Zero(7);
+  more[1] = 0.8;
+  SiteTare tare = site_tare(model);
+  EXPECT_EQ(tare.report().state, control::TareState::none);
+  tare.begin();
+  run(tare, model, more, 1.0, 3000);
+  EXPECT_EQ(tare.report().state, control::TareState::under_way) << "it comes in within a cycle";
+  double before = tare.lacking_N_m()[1];
+  EXPECT_LT(before, 0.01);
+  for (int i = 0; i < 1000; ++i) {
+    const double now = tare.lacking_N_m()[1];
+    EXPECT_LE(now - before, 0.8e-3 * 1.01);
+    before = now;
+  }
+  EXPECT_EQ(tare.report().state, control::TareState::done);
+  EXPECT_NEAR(before, 0.8, 1e-9);
+  tare.begin();
+  run(tare, model, -more, 1.0, 1500);
+  tare.stop();
+  EXPECT_EQ(tare.report().state, control::TareState::stopped);
+  EXPECT_NEAR(tare.lacking_N_m()[1], 0.8, 1e-9);
+  EXPECT_NEAR(tare.found_N_m()[1], 0.8, 1e-9);
+}
+
+TEST(SiteTare, RefusesAJointThatDoesNotFollowAndAWeightThatNobodyCarries) {
+  const arm::Chain model = *arm::Chain::make(arm_plants::openarm_class().chain);
+  JointVector more = JointVector::Zero(7);
+  SiteTare blocked = site_tare(model);
+  blocked.begin();
+  run(blocked, model, more, 0.3, 3000);
+  EXPECT_EQ(blocked.report().state, control::TareState::still);
+  EXPECT_NEAR(blocked.report().value, 0.3, 0.02);
+  EXPECT_EQ(blocked.lacking_N_m(), JointVector::Zero(7).eval());
+  more[3] = -0.5 * arm_plants::openarm_class().chain.joints[3].limits.effort_N_m;
+  SiteTare heavy = site_tare(model);
+  heavy.begin();
+  run(heavy, model, more, 1.0, 3000);
+  EXPECT_EQ(heavy.report().state, control::TareState::too_large);
+  EXPECT_EQ(heavy.report().joint, 3U);
+  EXPECT_EQ(heavy.lacking_N_m(), JointVector::Zero(7).eval());
 }
 
 /// Three joints that move the tool along x, y and z.

@@ -75,9 +75,9 @@ class OperatorAtASite : public ::testing::Test {
   }
   /// The next word that comes, patiently.
   SiteWord next() {
-    SiteWord word{};
-    EXPECT_TRUE(eventually([&] { return exchange.words.try_pop(word); }));
-    return word;
+    runtime::SiteCommand command;
+    EXPECT_TRUE(eventually([&] { return exchange.words.try_pop(command); }));
+    return command.word;
   }
 
   Pipe typed, terminal;

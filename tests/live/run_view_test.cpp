@@ -84,5 +84,39 @@ TEST(RunView, AViewerChangesAndCommandsNothing) {
   EXPECT_TRUE(client.text_with("nobody listens"));
 }
 
+TEST(RunView, WhereTheOperatorAllowsItAViewerAsksAndIsAnswered) {
+  telemetry::RecordStream<Tick> stream;
+  std::vector<std::string> asked;
+  double gain = 0.5;
+  RunView view(About{}, RunRequests{.ask = [&](const std::string& line) -> Check {
+                                      asked.push_back(line);
+                                      if (line != "set force_gain 2.000000") return std::nullopt;
+                                      return Error{.code = ErrorCode::out_of_bounds,
+                                                   .parameter = "force_gain",
+                                                   .message = "2 is refused: it may be 0 to 0.5",
+                                                   .place = {}};
+                                    },
+                                    .force_gain = [&] { return std::optional(gain); }});
+  view.add("/tick", "tactus_msgs/msg/Tick", stream);
+  ServerOptions options{.port = 0, .conversation = {}};
+  const auto server = Server::start(options, {}, view).value();
+  RawClient client(server.port());
+  ASSERT_TRUE(client.open(server.port()));
+  ASSERT_TRUE(client.text_with("\"/tick\""));
+  client.say(R"({"op":"setParameters","parameters":[{"name":"force_gain","value":2.0}]})");
+  EXPECT_TRUE(client.text_with("0 to 0.5"));
+  EXPECT_TRUE(client.text_with("parameterValues"));
+  client.say(R"({"op":"setParameters","parameters":[{"name":"damping","value":2.0}]})");
+  EXPECT_TRUE(client.text_with("one parameter to set"));
+  client.say(R"({"op":"advertise","channels":[{"id":1,"topic":"/request","encoding":"json","schemaName":""}]})");
+  client.say_binary(std::string("\x01\x01\x00\x00\x00", 5) + R"({"data": "tare"})");
+  EXPECT_TRUE(client.text_with("tare: asked for"));
+  for (const char* nonsense : {"tare", "[1]", R"({"data": 2})", "{}", ""}) {
+    client.say_binary(std::string("\x01\x01\x00\x00\x00", 5) + nonsense);
+    EXPECT_TRUE(client.text_with("a request is JSON")) << nonsense;
+  }
+  EXPECT_EQ(asked, (std::vector<std::string>{"set force_gain 2.000000", "tare"}));
+}
+
 }  // namespace run_view_test
 }  // namespace tactus::live

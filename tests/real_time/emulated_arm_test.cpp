@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -169,6 +170,46 @@ TEST(EmulatedArm, AHandLeadsEveryJointBackAndForthOnceItsMotorsCarryItAndItsTime
 }
 
 /// The same torques make another instance of the plant move as the motors tell.
+TEST(EmulatedArm, AHandTapsWithItAndItsToolMeetsASurfaceBetweenTheLifts) {
+  auto made = EmulatedArm::make({.chain = chain(),
+                                 .held_at = bent(),
+                                 .tapping = EmulatedArm::Tapping{.depth_m = 0.04, .period_s = 1.5, .after_s = 0.5},
+                                 .surface = EmulatedArm::Surface{.gap_m = 0.02},
+                                 .tool_m = 0.15 * arm::Vector3::UnitZ()});
+  ASSERT_TRUE(made) << describe(made.error());
+  EmulatedArm& arm = **made;
+  const auto model = *arm::Chain::make(chain());
+  const arm::Vector3 began_m = arm.tool().position_m;
+  int touches = 0;
+  bool touched = false;
+  double most_N = 0.0, lowest_m = 0.0, highest_m = -1.0;
+  constexpr int steps = 75'000;  // of 100 µs: three taps from 2.5 s on
+  for (int step = 0; step < steps; ++step) {
+    arm::JointVector q(7), v(7);
+    for (std::size_t i = 0; i < joints; ++i) {
+      q[static_cast<Eigen::Index>(i)] = arm.position_rad(i);
+      v[static_cast<Eigen::Index>(i)] = arm.velocity_rad_per_s(i);
+    }
+    // Motors that carry it and damp it, by a model that is not the plant's.
+    const arm::JointVector torque = model.gravity_torque(q) - 0.3 * v;
+    arm.step(std::span(torque.data(), joints));
+    const double below_m = (arm.tool().position_m - began_m).z();
+    if (step < 24'000) EXPECT_EQ(arm.contact_N(), 0.0) << "nobody taps yet";
+    const bool now = arm.contact_N() > 0.5;
+    touches += now && !touched ? 1 : 0;
+    touched = now || (touched && below_m < -0.015);  // what bounces at the surface touches once
+    most_N = std::max(most_N, arm.contact_N());
+    if (step < 25'000) continue;
+    lowest_m = std::min(lowest_m, below_m);
+    highest_m = std::max(highest_m, below_m);
+  }
+  EXPECT_EQ(touches, 4) << "at 2.5, 4, 5.5 and 7 s";
+  EXPECT_GT(most_N, 2.0);
+  EXPECT_LT(lowest_m, -0.0195);
+  EXPECT_GT(lowest_m, -0.022) << "it is stiff";
+  EXPECT_GT(highest_m, -0.01) << "and it lifts off again";
+}
+
 TEST(EmulatedArm, MovesAsItsPlantDoesUnderTheTorquesOfTheMotors) {
   Bus bus({});
   bus.order_all(0xfc);

@@ -2,6 +2,7 @@
 #include <tactus/runtime/ros2/bridge.hpp>
 
 #include <limits>
+#include <mutex>
 
 #include "tests/ros2/fast_dds_peer.hpp"
 #include "tests/ros2/test_network.hpp"
@@ -139,6 +140,38 @@ TEST_F(BridgeTest, AnotherVendorTellsWhereTheHandIsMeantToBe) {
   ASSERT_TRUE(eventually([&] { return bridge.counts().refused == 4; }));
   EXPECT_EQ(bridge.take_request(), 0.02);
   EXPECT_EQ(bridge.counts().requests, requests + 2);
+}
+
+/// `std_msgs/msg/String` in little-endian CDR.
+test::Bytes cdr_of(const std::string& text) {
+  const std::size_t length = text.size() + 1;
+  test::Bytes bytes{0x00, 0x01, 0x00, 0x00};
+  for (std::size_t i = 0; i < 4; ++i) bytes.push_back(static_cast<unsigned char>(length >> (8 * i)));
+  bytes.insert(bytes.end(), text.begin(), text.end());
+  bytes.push_back(0);
+  return bytes;
+}
+
+TEST_F(BridgeTest, AnotherVendorAsksAndIsAnswered) {
+  std::string asked;
+  std::mutex mutex;
+  params.takes_requests = false;
+  params.ask = [&](const std::string& line) {
+    const std::scoped_lock lock(mutex);
+    asked = line;
+    return "heard " + line;
+  };
+  peer.advertise(topic("request"), text_type);
+  peer.subscribe(topic("answer"), text_type);
+  const Bridge bridge = Bridge::create(params).value();
+  ASSERT_TRUE(eventually([&] { return peer.readers(topic("request")) == 1; }));
+  ASSERT_TRUE(eventually([&] {
+    peer.publish(topic("request"), cdr_of("set force_gain 0.25"));
+    const auto answers = peer.received(topic("answer"));
+    return !answers.empty() && test::text_of(answers.back()).data == "heard set force_gain 0.25";
+  }));
+  const std::scoped_lock lock(mutex);
+  EXPECT_EQ(asked, "set force_gain 0.25");
 }
 
 TEST_F(BridgeTest, MalformedMessagesAreDroppedAndTheNextGoodOneArrives) {

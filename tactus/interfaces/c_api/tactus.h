@@ -360,8 +360,10 @@ typedef struct tactus_teleoperator_report {
 TACTUS_API tactus_status tactus_teleoperator_start(const tactus_teleoperator_options* options, tactus_teleoperator* made,
                                                    tactus_error* error);
 /* What the operator does: "arm", "press" and "release" (the dead-man switch), "clutch", "unclutch", "stop" (emergency stop),
- * "clear" (leave a fault); and the marks of an episode in the log, "start", "keep" and "discard". Errors: TACTUS_SYNTAX for
- * another word; TACTUS_FAILED if it has ended, or too many words wait; TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT. */
+ * "clear" (leave a fault); the marks of an episode in the log, "start", "keep" and "discard"; "tare" (of two arms), and
+ * "set force_gain 2". Errors: TACTUS_SYNTAX for another word; TACTUS_OUT_OF_BOUNDS for a gain beyond what the experiment
+ * allows; TACTUS_INCONSISTENT if its sites cannot do that; TACTUS_FAILED if it has ended, or too many words wait;
+ * TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT. */
 TACTUS_API tactus_status tactus_teleoperator_press(tactus_teleoperator teleoperator, const char* word,
                                                    tactus_error* error);
 /* The text of the view is valid until the next call for this handle. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT. */

@@ -114,9 +114,7 @@ tactus_status tactus_teleoperator_press(tactus_teleoperator teleoperator, const 
     if (found == nullptr) {
       return leave_text("the handle is of no teleoperator, or it was released: start one", TACTUS_BAD_HANDLE, error);
     }
-    const auto pressed = tactus::runtime::parse_site_word(word, tactus::control::SiteRole::master);
-    if (!pressed) return leave(pressed.error(), error);
-    const auto refused = found->session->press(*pressed);
+    const auto refused = found->session->press(word);
     return refused ? leave(*refused, error) : TACTUS_OK;
   });
 }

@@ -4,6 +4,7 @@
 #include <tactus/hardware/devices/rig/rig.hpp>
 #include <tactus/hardware/wire/talk.hpp>
 #include <tactus/interfaces/cli/device.hpp>
+#include <tactus/interfaces/cli/device_guide.hpp>
 #include <tactus/interfaces/cli/interruption.hpp>
 #include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/standard_output.hpp>
@@ -36,7 +37,7 @@ using devices::RigSide;
 constexpr std::chrono::milliseconds between_looks{200};
 
 struct WatchOptions {
-  std::string rig, name;
+  std::string rig, name, guide;
   double duration_s = 0.0;
 };
 
@@ -163,7 +164,16 @@ void add_device_watch(CLI::App& device, const CLI::App& app, int& status) {
   verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")
       ->type_name("S")
       ->check(real_between(0.0, 1e6));
-  verb->callback([options, &app, &status] { end_command(app, watch(*options), status); });
+  verb->add_option(
+          "--guide", options->guide,
+          "Experiment (TOML) that names the arm's URDF: moves one arm by hand through three poses and names each "
+          "joint whose direction, zero or gear disagrees")
+      ->type_name("EXPERIMENT")
+      ->excludes("--duration-s");
+  verb->callback([options, &app, &status] {
+    end_command(app, options->guide.empty() ? watch(*options) : guide_arm(options->rig, options->name, options->guide),
+                status);
+  });
 }
 
 }  // namespace tactus::cli

@@ -4,6 +4,7 @@
 #include <tactus/hardware/wire/paced.hpp>
 #include <tactus/interfaces/cli/emulate.hpp>
 #include <tactus/interfaces/cli/real_between.hpp>
+#include <tactus/interfaces/cli/touch_options.hpp>
 #include <tactus/simulation/real_time/emulated_arm.hpp>
 
 #include <algorithm>
@@ -29,6 +30,8 @@ struct DamiaoOptions {
   std::vector<std::string> faults;
   std::uint64_t seed = 1;
   std::string arm, tip;
+  TouchOptions touch;
+  double tool_m = 0.0;
   std::vector<double> armature_kg_m2{0.01};
   std::vector<double> held_rad;
   std::vector<double> led;
@@ -66,6 +69,10 @@ Result<std::unique_ptr<real_time::EmulatedArm>> make_arm(const DamiaoOptions& op
                               rounded_number(farthest_rad) + " rad: name less");
   }
   if (!options.led.empty()) settings.led = {.reach_rad = options.led[0], .after_s = options.led[1]};
+  if (Check wrong = options.touch.check()) return *std::move(wrong);
+  settings.tool_m = options.tool_m * arm::Vector3::UnitZ();
+  settings.surface = options.touch.surface();
+  settings.tapping = options.touch.tapping();
   return real_time::EmulatedArm::make(settings);
 }
 
@@ -164,6 +171,17 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
       ->type_name("Q,Q,...")
       ->delimiter(',')
       ->check(real_between(-12.0, 12.0))
+      ->needs(arm);
+  const TouchOptionsOf touch =
+      add_touch_options(verb, options->touch, "Level surface this far below the arm's tool, in m, which the tool meets",
+                        "Afterwards a hand taps: it moves the tool down by this depth in m and up again, once in each "
+                        "period in s, from this time in s after the release");
+  touch.wall->needs(arm);
+  touch.tapped->needs(arm);
+  verb.add_option("--tool", options->tool_m,
+                  "Distance of the tool's point along z of the last link, in m; 0 by default")
+      ->type_name("Z")
+      ->check(real_between(-1.0, 1.0))
       ->needs(arm);
   verb.add_option("--led", options->led,
                   "Afterwards a hand moves each joint back and forth by this reach in rad, from this time in s "

@@ -52,6 +52,9 @@ void add_observer_options(CLI::App& verb, ObserverOptions& options) {
                                           "Toolkit); without --realtime and --site, messages on operator/servo_jp can "
                                           "move the simulated hand")
                                 ->group(group);
+  verb.add_flag("--requests", options.requests,
+                "Let the live page and ROS 2 nodes set the force gain, ask for a tare and mark episodes")
+      ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")
       ->needs(ros2)
@@ -59,9 +62,22 @@ void add_observer_options(CLI::App& verb, ObserverOptions& options) {
 }
 
 Result<Observers> Observers::open(const ObserverOptions& options, const experiments::Request& request,
-                                  const std::optional<control::SiteRole>& site,
-                                  const std::vector<std::string>& joints) {
+                                  const std::optional<control::SiteRole>& site, const std::vector<std::string>& joints,
+                                  runtime::SiteExchange* exchange) {
   Observers made;
+  if (options.requests && (!options.any() || exchange == nullptr)) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = options.any() ? "nobody commands this run: requests need --device or --site"
+                                          : "nobody could ask: add --live or --ros2",
+                 .place = "--requests"};
+  }
+  const auto ask_as = [exchange, role = site.value_or(control::SiteRole::master)](runtime::RequestSource source) {
+    return [exchange, role, source](const std::string& line) -> Check {
+      const auto asked = exchange->ask(line, role, source);
+      return asked ? Check() : Check(asked.error());
+    };
+  };
   if (options.live) {
     const auto where = place_of(*options.live);
     if (!where) return where.error();
@@ -69,16 +85,30 @@ Result<Observers> Observers::open(const ObserverOptions& options, const experime
     std::map<std::string, std::string> about{{"tactus.version", std::string(version())},
                                              {"tactus.experiment", request.name}};
     if (site) about["tactus.site"] = name_of(*site);
-    made.view_ = std::make_unique<live::RunView>(std::move(about));
+    std::optional<live::RunRequests> requests;
+    if (options.requests) {
+      requests = {.ask = ask_as(runtime::RequestSource::page), .force_gain = [exchange]() -> std::optional<double> {
+                    if (!exchange->settable.most_force_gain) return std::nullopt;
+                    return exchange->asked_force_gain.load(std::memory_order_relaxed);
+                  }};
+    }
+    made.view_ = std::make_unique<live::RunView>(std::move(about), std::move(requests));
   }
   if (options.ros2) {
     const auto network = ros2::network_of(ros2::environment());
     if (!network) return network.error();
-    auto observer = ros2::Observer::create({.network = *network,
-                                            .name_space = options.name_space,
-                                            .joints = joints,
-                                            .master = !site || *site == control::SiteRole::master,
-                                            .slave = !site || *site == control::SiteRole::slave});
+    ros2::Bridge::Params params{.network = *network,
+                                .name_space = options.name_space,
+                                .joints = joints,
+                                .master = !site || *site == control::SiteRole::master,
+                                .slave = !site || *site == control::SiteRole::slave};
+    if (options.requests) {
+      params.ask = [ask = ask_as(runtime::RequestSource::node)](const std::string& line) {
+        const Check refused = ask(line);
+        return refused ? "refused: " + describe(*refused) : "asked for: " + line;
+      };
+    }
+    auto observer = ros2::Observer::create(std::move(params));
     if (!observer) return observer.error();
     made.ros2_ = *std::move(observer);
   }

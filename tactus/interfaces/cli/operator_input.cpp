@@ -88,12 +88,12 @@ void OperatorInput::listen() {
 void OperatorInput::pass_on() {
   const bool master = role_ == control::SiteRole::master;
   arm_ = (asked_to_arm.exchange(false, std::memory_order_relaxed) && master) || arm_;
-  if (arm_) arm_ = !exchange_->words.try_push(runtime::SiteWord::arm);
+  if (arm_) arm_ = !exchange_->ask(runtime::SiteWord::arm);
   for (auto end = typed_.find('\n'); end != std::string::npos; end = typed_.find('\n')) {
-    const auto word = runtime::parse_site_word(std::string_view(typed_).substr(0, end), role_);
-    if (!word) {
-      lines_->say("tactus: " + describe(word.error()) + "\n");
-    } else if (!exchange_->words.try_push(*word)) {
+    const auto asked = runtime::parse_site_command(std::string_view(typed_).substr(0, end), role_, exchange_->settable);
+    if (!asked) {
+      lines_->say("tactus: " + describe(asked.error()) + "\n");
+    } else if (!exchange_->ask(*asked)) {
       return;
     }
     typed_.erase(0, end + 1);

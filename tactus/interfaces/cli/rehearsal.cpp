@@ -198,7 +198,13 @@ Starts starts_of(const devices::RigPair& pair) {
 Result<std::unique_ptr<emulation::damiao::Mechanism>> wired_arm(const station::DescribedArm& arm, const RigSide& side,
                                                                 bool leads, const Rehearsal& rehearsal) {
   real_time::EmulatedArm::Settings settings{.chain = arm.arm.chain, .held_at = arm.start, .tool_m = arm.arm.tool_m};
-  if (leads) settings.led = {.reach_rad = rehearsal.led_reach_rad, .after_s = rehearsal.led_after_s};
+  if (leads && rehearsal.tapping) {
+    settings.tapping = rehearsal.tapping;
+  } else if (leads) {
+    settings.led = {.reach_rad = rehearsal.led_reach_rad, .after_s = rehearsal.led_after_s};
+  } else {
+    settings.surface = rehearsal.surface;
+  }
   auto made = real_time::EmulatedArm::make(settings);
   if (!made) return made.error();
   return std::unique_ptr<emulation::damiao::Mechanism>(std::make_unique<WiredArm>(*std::move(made), side));

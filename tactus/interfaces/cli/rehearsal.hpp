@@ -5,6 +5,7 @@
 #include <tactus/kernel/control/site_supervisor.hpp>
 #include <tactus/kernel/core/result.hpp>
 #include <tactus/kernel/station/described_arms.hpp>
+#include <tactus/simulation/real_time/emulated_arm.hpp>
 
 #include <memory>
 #include <optional>
@@ -19,6 +20,10 @@ struct Rehearsal {
   /// How far, in rad, and from when, in s, a simulated hand moves the joints of an emulated leader arm.
   double led_reach_rad = 0.3;
   double led_after_s = 10.0;
+  /// How a simulated hand taps with the tool of an emulated leader arm, instead of that; and what the tool of an
+  /// emulated follower arm meets.
+  std::optional<real_time::EmulatedArm::Tapping> tapping = {};
+  std::optional<real_time::EmulatedArm::Surface> surface = {};
 };
 
 /// Emulated motors in place of those of a rig: the motors of a side on a pseudo-terminal, or Haply's service on a port

@@ -9,6 +9,7 @@
 #include <tactus/interfaces/cli/rig_run.hpp>
 #include <tactus/interfaces/cli/servo_options.hpp>
 #include <tactus/interfaces/cli/supervised_run.hpp>
+#include <tactus/interfaces/cli/touch_options.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -37,8 +38,28 @@ struct RehearseOptions {
   SupervisedOptions supervised;
   Rehearsal rehearsal;
   std::vector<double> led;
+  TouchOptions touch;
   ObserverOptions observers;
 };
+
+/// Only arms are led, tap and meet a surface: each joint of another rig turns freely.
+Check refuse_without_arms(const RehearseOptions& options, const configuration::Document& document) {
+  const auto kind = document.text_at("task.kind");
+  if (kind && *kind == "arm-tapping") return std::nullopt;
+  for (const auto& [given, option] :
+       {std::pair{!options.led.empty(), "--led"}, std::pair{!options.touch.tapped.empty(), "--tapped"},
+        std::pair{options.touch.wall_m.has_value(), "--wall"}}) {
+    if (!given) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message =
+                     "only arms are led, tap or meet a surface, those of an experiment of the kind arm-tapping: leave "
+                     "it out, or name "
+                     "such an experiment after RIG",
+                 .place = option};
+  }
+  return std::nullopt;
+}
 
 /// Where none is named: each joint driven by itself, in the units of the rig.
 Result<configuration::Document> experiment_of(RehearseOptions& options) {
@@ -69,16 +90,11 @@ Check rehearse(RehearseOptions& options, const CLI::App& verb, const std::string
                                      .variations = {},
                                      .name = experiment_name(options.experiment.file),
                                      .command = command};
+  if (Check wrong = refuse_without_arms(options, request.document)) return wrong;
+  if (Check wrong = options.touch.check()) return wrong;
+  options.rehearsal.tapping = options.touch.tapping();
+  options.rehearsal.surface = options.touch.surface();
   if (!options.led.empty()) {
-    const auto kind = request.document.text_at("task.kind");
-    if (!kind || *kind != "arm-tapping") {
-      return Error{.code = ErrorCode::inconsistent,
-                   .parameter = {},
-                   .message =
-                       "only arms are led, those of an experiment of the kind arm-tapping: leave it out, or name "
-                       "such an experiment after RIG",
-                   .place = "--led"};
-    }
     constexpr double farthest_rad = 3.0;
     if (options.led[0] > farthest_rad) {
       return Error{.code = ErrorCode::out_of_bounds,
@@ -124,6 +140,11 @@ void add_rehearse(CLI::App& app, const std::string& command, int& status) {
       ->delimiter(',')
       ->expected(2)
       ->check(real_between(0.0, latest_s));
+  const TouchOptionsOf touch = add_touch_options(
+      *verb, options->touch, "Level surface this far below the tool of an emulated follower arm, in m, which it meets",
+      "Instead of that a simulated hand taps: it moves the leader's tool down by this depth in m and up again, once in "
+      "each period in s, from this time in s after gravity compensation is on");
+  touch.tapped->excludes("--led");
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
   add_log_limit_option(*verb, options->log_limit);
   add_servo_options(*verb, options->servo);

@@ -3,6 +3,7 @@
 #include <tactus/data/configuration/toml_writer.hpp>
 #include <tactus/hardware/devices/rig/rig_arms.hpp>
 #include <tactus/interfaces/cli/rig_drive.hpp>
+#include <tactus/interfaces/cli/settable.hpp>
 #include <tactus/kernel/station/supervised_arms.hpp>
 #include <tactus/kernel/station/watched_arm.hpp>
 #include <tactus/runtime/servo/site_parts.hpp>
@@ -56,6 +57,13 @@ Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPa
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
   RigDrive drive(pair, params->servo.rate_Hz, configuration::to_toml(*params));
   tell_devices(drive, only);
+  if (only != SiteRole::slave) {
+    const auto sites = control::make_sites(joints, tick);
+    if (!sites) return request.document.locate(under("control", sites.error()));
+    const auto settable = settable_of(sites->master.force_gain(), supervision.force_gain, tick, false);
+    if (!settable) return request.document.locate(under("control.supervision.force_gain", settable.error()));
+    drive.settable = *settable;
+  }
   if (!only) {
     drive.loop = [joints, settings, tick, channel = params->channel](auto& exchange, auto& leader, auto& follower) {
       return RigLoop::make(joints, channel, tick, settings, exchange, leader, follower);
@@ -109,13 +117,21 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   if (!leader_motors) return request.document.locate(leader_motors.error());
   if (!follower_motors) return request.document.locate(follower_motors.error());
   const bool watches = leader_motors->judges();
+  const Seconds tick{1.0 / params->servo.rate_Hz};
+  drive.settable.tares = true;
+  if (only != SiteRole::slave) {
+    const auto leader = station::arm_leader_site(*params, *setup, limits_of(*drive.pair.leader), {});
+    if (!leader) return request.document.locate(leader.error());
+    const auto settable = settable_of(leader->site().force_gain(), supervision.force_gain, tick, true);
+    if (!settable) return request.document.locate(under("rig.supervision.force_gain", settable.error()));
+    drive.settable = *settable;
+  }
   if (!only) {
     auto sites = station::arm_sites(*params, *setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
     if (!sites) return request.document.locate(sites.error());
     std::optional<RigLoop::Watches> motors;
     if (watches) motors = {.leader = *leader_motors, .follower = *follower_motors};
-    drive.loop = [settings, motors, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
-                     auto& exchange, auto& leader, auto& follower) {
+    drive.loop = [settings, motors, sites = *std::move(sites), tick](auto& exchange, auto& leader, auto& follower) {
       return RigLoop::around(sites, tick, settings, exchange, leader, follower, motors);
     };
     return drive;

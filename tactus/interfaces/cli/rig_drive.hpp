@@ -7,6 +7,7 @@
 #include <tactus/hardware/devices/rig/rig_site_loop.hpp>
 #include <tactus/kernel/core/joints.hpp>
 #include <tactus/kernel/station/described_arms.hpp>
+#include <tactus/runtime/servo/site_command.hpp>
 #include <tactus/runtime/servo/site_log.hpp>
 #include <tactus/simulation/experiments/experiment.hpp>
 
@@ -28,6 +29,7 @@ struct RigDrive {
   std::string configuration;
   std::optional<station::DescribedArms> arms;  ///< where the sites are those of arms
   runtime::LogMetadata about;                  ///< what else a log needs, so that it can be replayed
+  runtime::Settable settable;                  ///< while it runs
   /// What a servo thread steps where both sides are here, before devices that outlive it. Errors are those of the
   /// experiment's file.
   std::function<Result<devices::RigLoop>(runtime::SiteExchange&, devices::MotorBusDevice& leader,

@@ -134,6 +134,35 @@ std::string words_of_motor(const RigSecond& second, const RigPair& pair) {
          ": look at the motor and its sign, or correct the URDF";
 }
 
+bool is_over(const RigSecond::Tare& tare) {
+  return tare.report.state != control::TareState::none && tare.report.state != control::TareState::under_way;
+}
+
+/// How the tare of a side goes, as the rest of a line.
+std::string words_of(const RigSecond::Tare& tare, const char* name, const devices::RigSide& side) {
+  using control::TareState;
+  const control::TareReport& report = tare.report;
+  const std::string begin = std::string("; tare of the ") + name;
+  if (report.state == TareState::none) return {};
+  if (report.state == TareState::under_way) return begin + " is under way: touch nothing";
+  if (report.state == TareState::stopped) return begin + " was stopped, nothing has changed";
+  if (report.state == TareState::done) {
+    std::string all;
+    for (std::size_t joint = 0; joint < side.joints.size() && joint < tare.found_Nm.size(); ++joint) {
+      all += (all.empty() ? "" : ", ") + report::fixed(tare.found_Nm[joint], 2);
+    }
+    return begin + " added to gravity compensation: " + all + " N m";
+  }
+  const devices::RigJoint& joint = joint_of(side, report.joint);
+  if (report.state == TareState::still) {
+    return begin + " is refused, nothing has changed: " + joint.path + " made " +
+           report::fixed(100.0 * report.value, 0) +
+           " % of the motion: free it, or raise control.tare.amplitude_rad above its play and friction";
+  }
+  return begin + " is refused, nothing has changed: " + joint.path + " lacks " + report::fixed(report.value, 2) +
+         " N m, more than control.tare.most_share of its limit: look at the URDF and at the motor's sign";
+}
+
 /// What a person does next, where there is something.
 std::string advice(const RigSecond& second, const RigPair& pair, std::optional<control::SiteRole> only) {
   using control::SiteState;
@@ -152,6 +181,9 @@ std::string advice(const RigSecond& second, const RigPair& pair, std::optional<c
   }
   if (only == control::SiteRole::slave && second.leader == SiteState::configure) return "; armed at its leader's";
   if (second.leader == SiteState::fault || second.follower == SiteState::fault) return "; type 'clear', then 'arm'";
+  if (second.leader == SiteState::armed && is_over(second.leader_tare) && is_over(second.follower_tare)) {
+    return "; type 'press' to couple the arms";
+  }
   const bool waits = second.leader == SiteState::configure || second.leader == SiteState::hold;
   return waits ? "; hold the leader still and type 'arm'" : "";
 }
@@ -168,6 +200,9 @@ std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<
   }
   if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
+  if (second.force_gain > 0.0) line += ", force gain " + rounded_number(second.force_gain);
+  if (only != control::SiteRole::slave) line += words_of(second.leader_tare, "leader", *pair.leader);
+  if (only != control::SiteRole::master) line += words_of(second.follower_tare, "follower", *pair.follower);
   return line + words_of_fault(second, pair) + words_of_motor(second, pair) + words_of_support(second, pair) +
          words_of_probe(second, pair) + advice(second, pair, only) + "\n";
 }

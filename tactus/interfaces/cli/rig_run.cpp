@@ -165,7 +165,8 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   const SayLine say = [&errors](const std::string& line) { errors.say(line); };
-  auto observers = Observers::open(observer_options, request, only, names);
+  exchange.allow(found->settable);
+  auto observers = Observers::open(observer_options, request, only, names, &exchange);
   if (!observers) return observers.error();
   std::optional<link::JointEndpoint> endpoint;
   std::optional<JointSite> site;

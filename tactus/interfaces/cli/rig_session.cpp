@@ -149,6 +149,7 @@ Check RigSession::State::run() {
     if (!made) return made.error();
     driven[side].emplace(*std::move(made));
   }
+  exchange.allow(found->settable);
   auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);
   if (!loop) return request.document.locate(loop.error());
   streams = std::make_unique<runtime::JointStreams>(joints);
@@ -252,15 +253,14 @@ bool RigSession::running() const {
   return !state_->stopped && !state_->servo->ended();
 }
 
-Check RigSession::press(runtime::SiteWord word) {
+Check RigSession::press(std::string_view line) {
   const std::scoped_lock lock(state_->mutex);
   const auto failed = [](const char* why) {
     return Error{.code = ErrorCode::failed, .parameter = {}, .message = why, .place = {}};
   };
   if (state_->stopped || state_->servo->ended()) return failed("the teleoperator has ended: start it again");
-  if (!state_->exchange.words.try_push(word)) {
-    return failed("sixteen words wait already for the servo thread: wait for a control cycle");
-  }
+  const auto asked = state_->exchange.ask(line, control::SiteRole::master, runtime::RequestSource::operator_input);
+  if (!asked) return asked.error();
   return std::nullopt;
 }
 

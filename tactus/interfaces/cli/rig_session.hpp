@@ -63,7 +63,7 @@ class RigSession {
   /// Whether the servo thread runs.
   [[nodiscard]] bool running() const;
   /// What the operator does. Errors: `failed` where sixteen words wait already, or it was stopped.
-  Check press(runtime::SiteWord word);
+  Check press(std::string_view line);
   /// Of the newest control cycle.
   [[nodiscard]] Sample newest();
   /// One line: states, causes, what is wrong, what to do next; of the last whole second, with the reason of a driver

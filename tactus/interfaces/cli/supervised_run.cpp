@@ -8,6 +8,7 @@
 #include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/rig_run.hpp>
 #include <tactus/interfaces/cli/run_log.hpp>
+#include <tactus/interfaces/cli/settable.hpp>
 #include <tactus/interfaces/cli/supervised_report.hpp>
 #include <tactus/interfaces/cli/supervised_run.hpp>
 #include <tactus/kernel/station/device_registry.hpp>
@@ -294,13 +295,22 @@ Check run_supervised(const SupervisedOptions& options, const ObserverOptions& ob
   if (!names) return names.error();
 
   runtime::SiteExchange exchange;
+  if (here.one.value_or(SiteRole::master) == SiteRole::master) {
+    const Seconds tick{1.0 / params->servo.rate_Hz};
+    const auto& control = experiments::sites_of(*params).control;
+    const auto sites = control::make_sites(control, tick);
+    if (!sites) return document.locate(under("control", sites.error()));
+    const auto settable = settable_of(sites->master.force_gain(), control.supervision.force_gain, tick, false);
+    if (!settable) return document.locate(under("control.supervision.force_gain", settable.error()));
+    exchange.allow(*settable);
+  }
   // Before all other threads: what they hold back, only these two hear.
   const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   const auto person = OperatorInput::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
-  auto observers = Observers::open(observer_options, request, here.one);
+  auto observers = Observers::open(observer_options, request, here.one, {}, &exchange);
   if (!observers) return observers.error();
   auto devices = open_devices(*names, here, *params);
   if (!devices) return document.locate(devices.error());

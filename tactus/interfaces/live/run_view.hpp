@@ -7,19 +7,33 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::live {
 
-/// What a run at the real clock does, for observers: every record of its streams, under the topics of its log. A
-/// viewer changes nothing and commands nothing; each attempt is refused with a message.
+/// What a run takes from its viewers, where its operator allows that. Called by the server's thread.
+struct RunRequests {
+  /// A line, as it is typed at the console. Errors: why it is refused.
+  std::function<Check(const std::string& line)> ask;
+  /// The force gain that was asked for last; none if it cannot change.
+  std::function<std::optional<double>()> force_gain;
+};
+
+/// What a run at the real clock does, for observers: every record of its streams, under the topics of its log.
+///
+/// A viewer changes nothing and commands nothing, and each attempt is refused with a message; but with `RunRequests` it
+/// may ask: by the parameter `force_gain`, or by a message on the topic `/request`, JSON of `std_msgs/String`
+/// (`{"data":"tare"}`). A status answers.
 class RunView final : public Application {
  public:
   /// `about` is what a viewer receives first.
-  explicit RunView(std::map<std::string, std::string> about) : about_(std::move(about)) {}
+  explicit RunView(std::map<std::string, std::string> about, std::optional<RunRequests> requests = {})
+      : about_(std::move(about)), requests_(std::move(requests)) {}
 
   /// Shows what goes into the stream from now on. Before a server starts.
   template <Recordable Record, std::size_t Capacity>
@@ -33,7 +47,7 @@ class RunView final : public Application {
 
   [[nodiscard]] const std::vector<Topic>& topics() const override { return topics_; }
   [[nodiscard]] std::map<std::string, std::string> metadata() const override { return about_; }
-  [[nodiscard]] std::vector<Parameter> parameters() const override { return {}; }
+  [[nodiscard]] std::vector<Parameter> parameters() const override;
   std::vector<Status> set_parameters(const std::vector<Parameter>& wanted) override;
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
@@ -72,7 +86,10 @@ class RunView final : public Application {
     typename telemetry::RecordStream<Record, Capacity>::Reader entries_;
   };
 
+  [[nodiscard]] Status answer(const std::string& line) const;
+
   std::map<std::string, std::string> about_;
+  std::optional<RunRequests> requests_;
   std::vector<Topic> topics_;
   std::vector<std::unique_ptr<Source>> sources_;  ///< one for each topic
   std::atomic<std::uint64_t> lost_{0};

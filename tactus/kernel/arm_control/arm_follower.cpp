@@ -8,7 +8,8 @@
 namespace tactus::arm_control {
 
 ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-                         const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, Seconds dt)
+                         const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling,
+                         const SiteTare& tare, Seconds dt)
     : chain_(chain),
       tool_m_(arm.tool_m),
       feed_forward_(params.feed_forward, arm.chain, chain),
@@ -19,7 +20,7 @@ ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain&
       told_(JointVector::Zero(chain.joints())),
       most_(effort_limits(arm.chain)),
       observes_(params.torque == TorqueSource::observer),
-      lacking_(arm.lacking_N_m.size() == chain.joints() ? arm.lacking_N_m : JointVector::Zero(chain.joints())),
+      tare_(tare),
       bias_(params.torque == TorqueSource::observer ? params.observer.bias_distance_m : 0.0, arm.chain, dt),
       dead_band_(JointVector::Zero(chain.joints())),
       stiffness_(params.stiffness_share * params.gains.of(chain.joints(), &DriveGains::stiffness_N_m_per_rad)),
@@ -79,7 +80,14 @@ Result<ArmFollower> ArmFollower::make(const Params& params, const Arm& arm, Seco
   if (!wanted) return under("wanted_motion", wanted.error());
   const auto coupling = make_coupling(params, arm, *chain, dt);
   if (!coupling) return coupling.error();
-  return ArmFollower(params, arm, *chain, *observer, *wanted, *coupling, dt);
+  const auto& gains = params.gains;
+  const auto tare = SiteTare::make(
+      arm.tare, arm.chain, *chain,
+      {.stiffness_N_m_per_rad = gains.of(chain->joints(), &DriveGains::stiffness_N_m_per_rad),
+       .damping_N_m_s_per_rad = gains.of(chain->joints(), &DriveGains::damping_N_m_s_per_rad)},
+      arm.lacking_N_m.size() == chain->joints() ? arm.lacking_N_m : JointVector::Zero(chain->joints()), dt);
+  if (!tare) return under("tare", tare.error());
+  return ArmFollower(params, arm, *chain, *observer, *wanted, *coupling, *tare, dt);
 }
 
 JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept {
@@ -103,21 +111,25 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
   ArmMessage leader = heard;
   if (passivity_.counts()) passivity_.hold_back(leader, told_);
   if (tool_coupling_) leader = tool_coupling_->wanted(leader, reading.position);
+  if (tare_.acts()) leader.position.array() += tare_.away_rad(reading);
+  const JointVector& lacking = tare_.lacking_N_m();
   Output output;
-  output.support = feed_forward_.torque(reading) + lacking_;
+  output.support = feed_forward_.torque(reading) + lacking;
   output.command = {.position = leader.position,
                     .velocity = leader.velocity,
                     .stiffness = stiffness_,
                     .damping = damping_,
                     .torque = output.support};
-  if (stiffness_limit_.limits() || damping_limit_.limits()) output.command.torque -= excess_torque(reading, leader);
+  if (stiffness_limit_.limits() || damping_limit_.limits()) {
+    output.command.torque -= tare_.limit_share() * excess_torque(reading, leader);
+  }
   output.message = {.position = reading.position, .velocity = reading.velocity, .external_torque = sensed};
   if (four_channel_) {
     const FourChannel::Output both = four_channel_->step(reading, leader);
     output.command.torque += both.torque;
     output.message.external_torque = both.external;
   } else if (observes_) {
-    output.message.external_torque = std::visit([&](auto& one) { return one.step(reading); }, observer_) + lacking_;
+    output.message.external_torque = std::visit([&](auto& one) { return one.step(reading); }, observer_) + lacking;
     if (bias_.follows()) {
       const ToolJacobian tool = chain_.jacobian(reading.position, chain_.joints() - 1, tool_m_).topRows<3>();
       output.message.external_torque -= bias_.step(output.message.external_torque, (tool * reading.velocity).norm());

@@ -7,6 +7,7 @@
 #include <tactus/kernel/arm_control/external_torque_observer.hpp>
 #include <tactus/kernel/arm_control/feed_forward.hpp>
 #include <tactus/kernel/arm_control/passivity.hpp>
+#include <tactus/kernel/arm_control/site_tare.hpp>
 #include <tactus/kernel/arm_control/tool_coupling.hpp>
 #include <tactus/kernel/arm_control/tool_limit.hpp>
 #include <tactus/kernel/arm_control/torque_bias.hpp>
@@ -108,6 +109,7 @@ class ArmFollower {
     PassivityCoupling passivity = {};
     /// What the arm's motors must give beyond `chain`'s gravity, as a tare found it (`Tare`); no rows: nothing.
     JointVector lacking_N_m = {};
+    Tare::Params tare = {};  ///< of one on request
   };
   struct Output {
     ArmCommand command;
@@ -123,6 +125,17 @@ class ArmFollower {
   /// looked at where an observer is. Real-time safe.
   Output step(const ArmReading& reading, const JointVector& sensed, const ArmMessage& heard) noexcept;
 
+  /// Its tare on request: the drives move each joint about where the leader wants it, and what is found corrects
+  /// gravity compensation and the observed torque. Real-time safe.
+  [[nodiscard]] SiteTare& tare() noexcept { return tare_; }
+  [[nodiscard]] const SiteTare& tare() const noexcept { return tare_; }
+  /// As made, but for the result of the tare. Real-time safe.
+  void continue_as(const ArmFollower& made) noexcept {
+    const SiteTare tare = tare_;
+    *this = made;
+    tare_ = tare;
+  }
+
  private:
   using Observer = std::variant<ExternalTorqueObserver, ElasticTorqueObserver>;
   static Result<Observer> make_observer(const TorqueObserverParams& params, const Arm& arm, const arm::Chain& chain,
@@ -130,7 +143,8 @@ class ArmFollower {
   static Result<std::optional<ToolCoupling>> make_coupling(const Params& params, const Arm& arm,
                                                            const arm::Chain& chain, Seconds dt);
   ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-              const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, Seconds dt);
+              const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, const SiteTare& tare,
+              Seconds dt);
   [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
   void leave_out_dead_band(JointVector& torque) const noexcept;
 
@@ -145,7 +159,7 @@ class ArmFollower {
   JointVector told_;  ///< the external torque that it sent last
   JointVector most_;  ///< torque of the bus
   bool observes_;
-  JointVector lacking_;
+  SiteTare tare_;
   TorqueBias bias_;
   JointVector dead_band_;
   JointVector stiffness_;

@@ -4,6 +4,8 @@
 #include <tactus/kernel/arm_control/joint_cutoff.hpp>
 #include <tactus/kernel/signal/checks.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace tactus::arm_control {
@@ -20,13 +22,32 @@ Result<JointLowPass> low_pass(const std::string& name, double cutoff_Hz, const E
   return JointLowPass::make(cutoffs(cutoff_Hz, each, joints), dt);
 }
 
+/// What moves a leader in a tare, over the bus: firm enough that friction takes a quarter of the amplitude, and with
+/// dampers that two cycles of delay bear.
+Tare::Drives tare_drives(const ArmLeader::Arm& arm, const arm::Chain& chain, const Tare::Params& params, Seconds dt) {
+  constexpr double over_friction = 4.0, slowest_rad_per_s = 12.0, damping_ratio = 0.7, share_a_tick = 0.3;
+  const JointVector rest = JointVector::Zero(chain.joints());
+  const JointVector inertia = chain.mass_matrix(rest).diagonal();
+  Tare::Drives drives{.stiffness_N_m_per_rad = rest, .damping_N_m_s_per_rad = rest};
+  for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    const double coulomb_N_m = arm.carried.joints[static_cast<std::size_t>(i)].friction.coulomb_N_m;
+    const double stiffness =
+        over_friction * coulomb_N_m / params.amplitude_rad + inertia[i] * slowest_rad_per_s * slowest_rad_per_s;
+    drives.stiffness_N_m_per_rad[i] = stiffness;
+    drives.damping_N_m_s_per_rad[i] =
+        std::min(2.0 * damping_ratio * std::sqrt(stiffness * inertia[i]), share_a_tick * inertia[i] / dt.value);
+  }
+  return drives;
+}
+
 /// Whether the drives pull the leader to where the follower is.
 bool pulls(ArmMethod method) { return method == ArmMethod::position_position || method == ArmMethod::four_channel; }
 
 }  // namespace
 
 ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
-                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt)
+                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command,
+                     const SiteTare& tare, Seconds dt)
     : params_(params),
       feed_forward_(feed_forward),
       chain_(chain),
@@ -35,7 +56,7 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       damping_(pulls(params.method) ? stiffness_ : drive_damping(params, chain.joints())),
       damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
       washed_damping_(pulls(params.method) ? 0.0 : params.damping_washout_Hz, effort_limits(arm.carried), dt),
-      lacking_(arm.lacking_N_m.size() == chain.joints() ? arm.lacking_N_m : JointVector::Zero(chain.joints())),
+      tare_(tare),
       model_(model),
       factr_(params.factr, arm.carried, chain),
       avoidance_(params.avoidance, chain.joints()),
@@ -83,8 +104,16 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   const auto command =
       low_pass("command_low_pass", params.command_low_pass_Hz, params.command_low_pass_each, joints, dt);
   if (!command) return command.error();
+  const auto tare = SiteTare::make(arm.tare, arm.carried, *chain, tare_drives(arm, *chain, arm.tare, dt),
+                                   arm.lacking_N_m.size() == joints ? arm.lacking_N_m : JointVector::Zero(joints), dt);
+  if (!tare) return under("tare", tare.error());
   return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
-                   dt);
+                   *tare, dt);
+}
+
+std::optional<double> ArmLeader::force_gain() const noexcept {
+  if (pulls(params_.method) || passivity_.counts()) return std::nullopt;
+  return params_.force_gain;
 }
 
 ToolJacobian ArmLeader::tool_at(const JointVector& position) const noexcept {
@@ -122,7 +151,13 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   }
   const bool reflects = !pulls(params_.method);
   Output output;
-  output.support = feed_forward_.torque(reading) + lacking_;
+  output.support = feed_forward_.torque(reading);
+  if (tare_.acts()) {
+    const ArmCommand moves = tare_.step(reading);
+    output.support.array() += moves.stiffness.array() * (moves.position - reading.position).array() -
+                              moves.damping.array() * reading.velocity.array();
+  }
+  output.support += tare_.lacking_N_m();
   const JointVector undisplayed = beside_display(reading, output.support, follower.external_torque);
   JointVector displayed = JointVector::Zero(joints);
   if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);

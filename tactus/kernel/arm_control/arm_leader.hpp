@@ -10,10 +10,12 @@
 #include <tactus/kernel/arm_control/induced_motion.hpp>
 #include <tactus/kernel/arm_control/joint_low_pass.hpp>
 #include <tactus/kernel/arm_control/passivity.hpp>
+#include <tactus/kernel/arm_control/site_tare.hpp>
 #include <tactus/kernel/arm_control/tool_limit.hpp>
 #include <tactus/kernel/arm_control/washed_damping.hpp>
 
 #include <array>
+#include <optional>
 
 namespace tactus::arm_control {
 
@@ -132,6 +134,7 @@ class ArmLeader {
     Joints<DriveGains> gains = {};  ///< of the follower's drives, for position-position
     /// What the arm's motors must give beyond `carried`'s gravity, as a tare found it (`Tare`); no rows: nothing.
     JointVector lacking_N_m = {};
+    Tare::Params tare = {};  ///< of one on request
   };
   struct Output {
     ArmCommand command;
@@ -148,12 +151,31 @@ class ArmLeader {
 
   /// One tick. The command acts from the next tick on, as on a bus, and the model counts with that. Real-time safe.
   Output step(const ArmReading& reading, const ArmMessage& follower) noexcept;
+  /// Displayed torque over the follower's external torque; none with a method whose drives pull, and with passive
+  /// ports, which count energy in the scale of the gain that they are made with.
+  [[nodiscard]] std::optional<double> force_gain() const noexcept;
+  /// From the next tick on. Real-time safe.
+  void set_force_gain(double gain) noexcept { params_.force_gain = gain; }
+
+  /// Its tare on request: springs and dampers over the bus move each joint about where it was, as part of its support,
+  /// and what is found corrects gravity compensation. Real-time safe.
+  [[nodiscard]] SiteTare& tare() noexcept { return tare_; }
+  [[nodiscard]] const SiteTare& tare() const noexcept { return tare_; }
+  /// As made, but for the force gain and the result of the tare. Real-time safe.
+  void continue_as(const ArmLeader& made) noexcept {
+    const SiteTare tare = tare_;
+    const double gain = params_.force_gain;
+    *this = made;
+    tare_ = tare;
+    params_.force_gain = gain;
+  }
   /// The torque in N m that really passed of the latest command; without that all of it did. Real-time safe.
   void applied(const JointVector& torque) noexcept;
 
  private:
   ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
-            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt);
+            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, const SiteTare& tare,
+            Seconds dt);
   [[nodiscard]] ToolJacobian tool_at(const JointVector& position) const noexcept;
   [[nodiscard]] JointVector beside_display(const ArmReading& reading, const JointVector& support,
                                            const JointVector& external) noexcept;
@@ -166,7 +188,7 @@ class ArmLeader {
   JointVector damping_;
   ToolLimit damping_limit_;
   WashedDamping washed_damping_;
-  JointVector lacking_;
+  SiteTare tare_;
   InducedMotion model_;
   FactrLaw factr_;
   FeedbackAvoidance avoidance_;

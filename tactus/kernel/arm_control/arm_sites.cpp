@@ -2,6 +2,7 @@
 #include <tactus/kernel/arm_control/arm_sites.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -88,7 +89,28 @@ class ControllerOfArm final : public control::SiteController<Joints<Input>, Join
       now_.applied(each(motor_force_N, of_arm_, [](double force_N) { return force_N; }));
     }
   }
-  void reset() noexcept override { now_ = made_; }
+  void reset() noexcept override { now_.continue_as(made_); }
+  [[nodiscard]] std::optional<double> force_gain() const noexcept override {
+    if constexpr (requires { now_.force_gain(); }) {
+      return now_.force_gain();
+    } else {
+      return std::nullopt;
+    }
+  }
+  void set_force_gain(double gain) noexcept override {
+    if constexpr (requires { now_.set_force_gain(gain); }) now_.set_force_gain(gain);
+  }
+  bool begin_tare() noexcept override {
+    now_.tare().begin();
+    return true;
+  }
+  void stop_tare() noexcept override { now_.tare().stop(); }
+  [[nodiscard]] control::TareReport tare() const noexcept override { return now_.tare().report(); }
+  [[nodiscard]] Joints<double> tared_N(const Joints<double>& joints) const noexcept override {
+    Joints<double> tared = same_for_each(joints, 0.0);
+    for (std::size_t i = 0; i < of_arm_; ++i) tared[i] = now_.tare().found_N_m()[static_cast<Eigen::Index>(i)];
+    return tared;
+  }
   [[nodiscard]] std::unique_ptr<control::SiteController<Joints<Input>, Joints<Output>>> clone() const override {
     return std::make_unique<ControllerOfArm>(*this);
   }

@@ -31,13 +31,17 @@ class Tare {
     std::int64_t cycles = 0;
     double amplitude_rad = 0.02;
     double frequency_Hz = 1.0;
+    double most_share = 0.3;
     static constexpr auto fields() {
       return List{field("cycles", &Params::cycles, between(0, 20),
                         "Cycles of motion that are averaged, after one in which the motion ramps in; 0: no tare."),
                   field("amplitude_rad", &Params::amplitude_rad, arm::units::radian, positive_up_to(0.1),
                         "Amplitude of the motion of each joint; in m if it slides."),
                   field("frequency_Hz", &Params::frequency_Hz, tactus::units::hertz, between(0.1, 5.0),
-                        "Frequency of this motion.")};
+                        "Frequency of this motion."),
+                  field("most_share", &Params::most_share, tactus::units::none, positive_up_to(1.0),
+                        "Largest error of a joint's gravity compensation, as a share of the joint's effort limit; a "
+                        "larger one is refused.")};
     }
   };
   /// Of the drives while it lasts.
@@ -54,6 +58,15 @@ class Tare {
   [[nodiscard]] bool done() const noexcept { return tick_ >= last_; }
   /// In N m, once it is done; positive where the motors must give more than the model has them give.
   [[nodiscard]] JointVector lacking_N_m() const noexcept { return sum_ / static_cast<double>(last_ - first_); }
+  /// How far each joint went to either side in the cycles that are averaged, over `amplitude_rad`. Without play and
+  /// friction, and with stiff drives, 1.
+  [[nodiscard]] JointVector travel() const noexcept { return (highest_ - lowest_) / (2.0 * amplitude_rad_); }
+  /// Of the latest tick, how far the drives pull each joint from where it was, in rad.
+  [[nodiscard]] double away_rad() const noexcept { return away_rad_; }
+  /// Ticks of one cycle.
+  [[nodiscard]] std::int64_t cycle_ticks() const noexcept { return first_; }
+  /// As made: the next step is its first.
+  void restart() noexcept;
 
  private:
   Tare(const Params& params, const arm::Chain& model, const Drives& drives, Seconds dt);
@@ -65,8 +78,10 @@ class Tare {
   std::int64_t first_;
   std::int64_t last_;
   std::int64_t tick_ = 0;
+  double away_rad_ = 0.0;
   JointVector start_;
   JointVector sum_;
+  JointVector lowest_, highest_;  ///< in the cycles that are averaged
 };
 
 }  // namespace tactus::arm_control

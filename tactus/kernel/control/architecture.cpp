@@ -133,6 +133,10 @@ class IndependentJoints final : public SiteController<Joints<Input>, Joints<Outp
   void reset() noexcept override {
     for (const auto& joint : joints_) joint->reset();
   }
+  [[nodiscard]] std::optional<double> force_gain() const noexcept override { return joints_.front()->force_gain(); }
+  void set_force_gain(double gain) noexcept override {
+    for (const auto& joint : joints_) joint->set_force_gain(gain);
+  }
   [[nodiscard]] std::unique_ptr<SiteController<Joints<Input>, Joints<Output>>> clone() const override {
     OfOneJoint copies;
     for (const auto& joint : joints_) copies.push_back(joint->clone());

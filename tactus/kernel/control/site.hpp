@@ -3,11 +3,13 @@
 
 #include <tactus/kernel/control/safety_gate.hpp>
 #include <tactus/kernel/control/site_signals.hpp>
+#include <tactus/kernel/control/tare_report.hpp>
 
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -26,9 +28,28 @@ class SiteController {
   /// Without what a drive's law gives, and with what of the support is still to come in: what a controller displays is
   /// what exceeds its support.
   virtual void applied(Each<Input, double> motor_force_N) noexcept = 0;
-  /// Back to the state in which it was made.
+  /// Back to the state in which it was made, but for its force gain and the result of its tare.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::unique_ptr<SiteController> clone() const = 0;
+
+  /// Displayed force over the force that the other site sends; none if the controller has no such gain, or one that
+  /// cannot change while it runs.
+  [[nodiscard]] virtual std::optional<double> force_gain() const noexcept { return std::nullopt; }
+  /// That gain from the next tick on. Without effect where `force_gain` is nullopt. Real-time safe.
+  virtual void set_force_gain(double) noexcept {}
+
+  /// Starts to identify what the model of gravity lacks, from the next tick on. Whoever calls it holds the device free
+  /// of all else. False if the controller has no tare. Real-time safe.
+  virtual bool begin_tare() noexcept { return false; }
+  /// Ends a tare that is under way; what acted before it continues to. Real-time safe.
+  virtual void stop_tare() noexcept {}
+  /// Of the latest tare. Real-time safe.
+  [[nodiscard]] virtual TareReport tare() const noexcept { return {}; }
+  /// What is added to gravity compensation by the latest tare that succeeded, in N, for each of `joints` joints.
+  /// Real-time safe.
+  [[nodiscard]] virtual Each<Input, double> tared_N(const Each<Input, double>& joints) const noexcept {
+    return same_for_each(joints, 0.0);
+  }
 };
 
 using MasterController = SiteController<MasterInput, MasterOutput>;
@@ -55,6 +76,16 @@ class ControllerOf final : public SiteController<Input, Output> {
   void reset() noexcept override { element_.reset(); }
   [[nodiscard]] std::unique_ptr<SiteController<Input, Output>> clone() const override {
     return std::make_unique<ControllerOf>(*this);
+  }
+  [[nodiscard]] std::optional<double> force_gain() const noexcept override {
+    if constexpr (requires { element_.force_gain(); }) {
+      return element_.force_gain();
+    } else {
+      return std::nullopt;
+    }
+  }
+  void set_force_gain(double gain) noexcept override {
+    if constexpr (requires { element_.set_force_gain(gain); }) element_.set_force_gain(gain);
   }
 
  private:
@@ -308,6 +339,14 @@ class Site {
   [[nodiscard]] const Forces& weight_N() const noexcept { return weight_N_; }
   /// To look at.
   [[nodiscard]] const Gates& gates() const noexcept { return gates_; }
+
+  /// As of its controller; all real-time safe.
+  [[nodiscard]] std::optional<double> force_gain() const noexcept { return controller_->force_gain(); }
+  void set_force_gain(double gain) noexcept { controller_->set_force_gain(gain); }
+  bool begin_tare() noexcept { return controller_->begin_tare(); }
+  void stop_tare() noexcept { controller_->stop_tare(); }
+  [[nodiscard]] TareReport tare() const noexcept { return controller_->tare(); }
+  [[nodiscard]] Forces tared_N() const noexcept { return controller_->tared_N(weight_N_); }
 
   /// Exchanges the controller for that of `other` and keeps the gates, so that no limit is lost. The new one first
   /// lives through `ticks` ticks of what was read last and of the force that the motor has now: its filters and models

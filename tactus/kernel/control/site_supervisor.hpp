@@ -73,6 +73,8 @@ struct SiteRequests {
   bool clutch = false;          ///< pressed: the hand moves and the slave does not; at the master
   bool emergency_stop = false;  ///< pressed: into `fault`, and no way out of it
   bool leave = false;           ///< pressed: the site is about to end, in `configure` and without force
+  bool tare = false;            ///< pressed: a site that is armed and does not follow identifies its gravity, once
+  double force_gain = -1.0;     ///< that is asked for, at the master; below 0: what was asked last
 };
 
 /// The state of one site, and why.

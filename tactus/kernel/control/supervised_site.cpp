@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace tactus::control {
@@ -18,6 +19,7 @@ void fill(SiteRecord& record, const Gated& site, const SupervisionOf<Payload>& s
   for_each_joint(
       [&record](const auto& gates) noexcept { record.given_J = farther(record.given_J, gates.motor().given_J()); },
       site.gates());
+  if constexpr (has_joints<typename Gated::Sensors>) record.tare = static_cast<std::int64_t>(site.tare().state);
 }
 
 /// What the sensors read, with what is to be believed of the other site.
@@ -77,7 +79,13 @@ Result<Supervised<Gated>> supervise(Gated site, const Settings& settings, SiteRo
   if (!supervision) return under("supervision", supervision.error());
   const auto check = make_each<ForceSensorCheck>(member_of_each(settings, checked), dt);
   if (!check) return under("supervision", under(group, check.error()));
-  return Supervised<Gated>(std::move(site), *supervision, *check);
+  if constexpr (std::is_same_v<Supervised<Gated>, SupervisedMasterOf<Gated>>) {
+    const auto gain = GainChange::make(joint_of(settings, 0).force_gain, site.force_gain(), dt);
+    if (!gain) return under("supervision", under("force_gain", gain.error()));
+    return Supervised<Gated>(std::move(site), *supervision, *check, *gain);
+  } else {
+    return Supervised<Gated>(std::move(site), *supervision, *check);
+  }
 }
 
 /// What supervision judges the support of a device by.
@@ -97,6 +105,15 @@ typename Raise::Snapshot snapshot_of(const Gated& site, const Sensors& sensors, 
       },
       sensors, snapshot.velocity_m_per_s);
   return snapshot;
+}
+
+/// Starts a tare that was asked for, once, as soon as the site has its device for itself, and ends one when it has not.
+template <class Gated, class Payload>
+void tare(Gated& site, const SupervisionOf<Payload>& supervision, bool asked, bool& tared) noexcept {
+  const bool may = asked && supervision.may_tare();
+  if (may && !tared) tared = site.begin_tare();
+  if (tared && !may) site.stop_tare();
+  tared = tared && asked;
 }
 
 /// The law that holds each joint while its support comes in, by its share.
@@ -130,6 +147,10 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
     for_each_joint([](ForceSensorCheck& check) noexcept { check.reset(); }, hand_sensor_);
   }
   if (supervision_.lets_go()) site_.release();
+  if (const auto gain = gain_.step({.asked = input.requests.force_gain, .elapsed_ticks = input.elapsed_ticks})) {
+    site_.set_force_gain(*gain);
+  }
+  if (input.requests.tare || tared_) tare(site_, supervision_, input.requests.tare, tared_);
   const bool follows = state == SiteState::active && !input.requests.clutch;
   if (state == SiteState::align || state == SiteState::armed) supervision_.stand_at_packet(offset_m_);
 
@@ -159,6 +180,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
       message, told_m_, offset_m_);
   output.packet = supervision_.packet(message);
   fill(output.record, site_, supervision_);
+  output.record.force_gain = gain_.gain();
   return output;
 }
 
@@ -186,6 +208,7 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
     site_.release();
   }
   if (supervision_.probes()) supervision_.stand(here_m);
+  if (input.requests.tare || tared_) tare(site_, supervision_, input.requests.tare, tared_);
   const Sensors sensors = with(input.sensors, supervision_.arrival(same_for_each(here_m, 0.0)));
   const bool sinks = site_.is_carried() && !supervision_.carries();
   const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/control/gain_change.hpp>
 #include <tactus/kernel/control/supervision.hpp>
 
 #include <cstdint>
@@ -11,8 +12,9 @@
 namespace tactus::control {
 
 /// The master. An operator arms it and presses the dead-man switch; then it sends the slave where the hand means to be
-/// and displays what the slave reports. While the clutch is pressed, and in every state but `active`, it reports the
-/// position that it sent last and gives no force: what the hand moved meanwhile becomes the workspace offset.
+/// and displays what the slave reports, by a force gain that the operator may change meanwhile (`GainChange`). While
+/// the clutch is pressed, and in every state but `active`, it reports the position that it sent last and gives no
+/// force: what the hand moved meanwhile becomes the workspace offset.
 template <class Gated>
 class SupervisedMasterOf {
  public:
@@ -33,10 +35,11 @@ class SupervisedMasterOf {
   };
 
   SupervisedMasterOf(Gated site, const SupervisionOf<Payload>& supervision,
-                     const Each<Sensors, ForceSensorCheck>& hand_sensor)
+                     const Each<Sensors, ForceSensorCheck>& hand_sensor, const GainChange& gain)
       : site_(std::move(site)),
         supervision_(supervision),
         hand_sensor_(hand_sensor),
+        gain_(gain),
         told_m_(same_for_each(hand_sensor, 0.0)),
         offset_m_(told_m_) {}
 
@@ -55,11 +58,15 @@ class SupervisedMasterOf {
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const Gated& site() const noexcept { return site_; }
+  /// The force gain as it acts, and how far an operator may raise it.
+  [[nodiscard]] const GainChange& force_gain() const noexcept { return gain_; }
 
  private:
   Gated site_;
   SupervisionOf<Payload> supervision_;
   Each<Sensors, ForceSensorCheck> hand_sensor_;  ///< the hand resists the motor as a wall does a slave
+  GainChange gain_;
+  bool tared_ = false;  ///< since the tare was asked for
   Each<Sensors, double> told_m_;
   Each<Sensors, double> offset_m_;
 };
@@ -109,6 +116,7 @@ class SupervisedSlaveOf {
   Gated site_;
   SupervisionOf<Payload> supervision_;
   Each<Sensors, ForceSensorCheck> force_sensor_;
+  bool tared_ = false;  ///< since the tare was asked for
 };
 
 using SupervisedMaster = SupervisedMasterOf<MasterSite>;

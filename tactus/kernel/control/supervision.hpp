@@ -3,6 +3,7 @@
 
 #include <tactus/kernel/control/agreement.hpp>
 #include <tactus/kernel/control/force_sensor_check.hpp>
+#include <tactus/kernel/control/gain_change.hpp>
 #include <tactus/kernel/control/message_follower.hpp>
 #include <tactus/kernel/control/overload_check.hpp>
 #include <tactus/kernel/control/pace_check.hpp>
@@ -10,6 +11,7 @@
 #include <tactus/kernel/control/sign_probe.hpp>
 #include <tactus/kernel/control/site_supervisor.hpp>
 #include <tactus/kernel/control/support_raise.hpp>
+#include <tactus/kernel/control/tare_report.hpp>
 #include <tactus/kernel/control/watchdog.hpp>
 #include <tactus/kernel/core/signals.hpp>
 
@@ -41,6 +43,7 @@ struct SupervisionParams {
   OverloadCheck::Params overload;
   SignProbe::Params probe;
   HoldParams hold;
+  GainChange::Params force_gain;
   double pace_share = 0.25;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
@@ -59,6 +62,8 @@ struct SupervisionParams {
         field("overload", &SupervisionParams::overload, "Limit of missed control cycles above which a site holds."),
         field("probe", &SupervisionParams::probe, "The force that tests the sign of a site's motor on arming."),
         field("hold", &SupervisionParams::hold, "The force when the site holds."),
+        field("force_gain", &SupervisionParams::force_gain,
+              "How an operator may change the force gain while the site runs."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
               "Share by which the other site's clock may run slower or faster before this site goes to hold; must be "
               "greater than the share of control cycles that the other site may miss."),
@@ -110,6 +115,7 @@ inline constexpr Legend state_legend = legend<SiteState>("");
 inline constexpr Legend cause_legend = legend<SiteCause>("Why the site does not follow: ");
 inline constexpr Legend limit_legend = legend<ActiveLimit>("What changes the force right now: ");
 inline constexpr Legend fault_legend = legend<GateFault>("What the gate latched: ");
+inline constexpr Legend tare_legend = legend<TareState>("The latest tare: ");
 
 /// What supervision shows of a tick. State, cause, limit and fault are four different things: what the site does, why
 /// it does not follow, what changes the force right now, and what made the gate release.
@@ -130,6 +136,8 @@ struct SiteRecord {
   double gap_m = 0.0;
   double given_J = 0.0;
   std::int64_t differs = 0;
+  double force_gain = 0.0;
+  std::int64_t tare = 0;
   static constexpr auto signals() {
     return List{
         observed("state", &SiteRecord::state, units::none, "", "", "", state_legend.text),
@@ -154,7 +162,11 @@ struct SiteRecord {
         observed("given_J", &SiteRecord::given_J, units::joule, "", "", "the motor gave it",
                  "Account of the passivity monitor."),
         observed("differs", &SiteRecord::differs, units::none, "", "", "",
-                 "Cell of the agreement in which the other site is known to differ, from 1; 0 for none.")};
+                 "Cell of the agreement in which the other site is known to differ, from 1; 0 for none."),
+        observed("force_gain", &SiteRecord::force_gain, units::none, "master", "hand", "",
+                 "Displayed force over the force that the slave sends, as it acts; 0 without a gain that "
+                 "can change."),
+        observed("tare", &SiteRecord::tare, units::none, "", "", "", tare_legend.text)};
   }
 };
 
@@ -245,6 +257,11 @@ class SupervisionOf {
     return state() == SiteState::hold && supervisor_.cause() == SiteCause::force_sensor && !cannot_hold_;
   }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
+  /// Whether the site is armed, its motors are tried, all of its support has come in, and it does not follow: then a
+  /// tare has the device for itself.
+  [[nodiscard]] bool may_tare() const noexcept {
+    return state() == SiteState::armed && before_ == SiteState::armed && !probes() && carries() && !is_held();
+  }
   /// What the other site has in common with this one.
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
   /// The packet that was applied last; of session 0 before any.

@@ -8,7 +8,7 @@ Check refuse_tare(const ArmTeleoperatorParams& params) {
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "control.tare.cycles",
                .message = std::to_string(params.control.tare.cycles) +
-                          ": only simulated taps have a tare so far; write 0 for motors and for tactus faults",
+                          ": tactus faults has no tare, only simulated taps and rigs have one; write 0",
                .place = {}};
 }
 

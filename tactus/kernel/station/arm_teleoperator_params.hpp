@@ -110,8 +110,9 @@ struct ArmControlParams : arm_control::ArmLeader::Params {
     return joined(arm_control::ArmLeader::Params::fields(),
                   List{field("follower", &ArmControlParams::follower, "The follower's site."),
                        field("tare", &ArmControlParams::tare,
-                             "Only with simulated taps: the errors of both arms' gravity compensation are measured "
-                             "before the operator takes the leader.")});
+                             "Measurement of the errors of both arms' gravity compensation: with simulated taps before "
+                             "the operator takes the leader, on a rig by the command tare, which averages two cycles "
+                             "if cycles is 0.")});
   }
 };
 
@@ -213,7 +214,7 @@ struct ArmTeleoperatorParams {
 /// Whether the follower is another arm than the leader.
 inline bool differs(const ArmPairParams& params) { return !params.follower.urdf.empty(); }
 
-/// Errors: `inconsistent`, under `control.tare.cycles`, for sites under supervision, which have no tare.
+/// Errors: `inconsistent`, under `control.tare.cycles`, for a run in which nobody can ask for a tare.
 Check refuse_tare(const ArmTeleoperatorParams& params);
 
 /// Errors: `inconsistent`, under `control.follower.coupling`, for a leader that leads the tool: `what` ("tactus

@@ -150,7 +150,6 @@ Result<Begun> begin(const ArmTeleoperatorParams& params, const DescribedArms& ar
         .message = "four-channel control is tried in virtual time alone, without supervision: write another method",
         .place = {}};
   }
-  if (Check wrong = refuse_tare(params)) return *std::move(wrong);
   if (Check wrong = refuse_tool_coupling(params, "supervision, of tactus faults and of a rig,")) {
     return *std::move(wrong);
   }
@@ -213,7 +212,8 @@ Result<control::JointSupervisedMaster> arm_leader_site(const ArmTeleoperatorPara
   auto leads = arm_control::leader_site(sites,
                                         {.carried = within(arms.leader.arm.chain, begun->gates),
                                          .induced = arms.exact.induced,
-                                         .gains = sites.follower.gains.of(begun->of_arm)},
+                                         .gains = sites.follower.gains.of(begun->of_arm),
+                                         .tare = sites.tare},
                                         begun->gates, begun->tick, beside);
   if (!leads) return under("control", leads.error());
   auto master =
@@ -232,7 +232,8 @@ Result<control::JointSupervisedSlave> arm_follower_site(const ArmTeleoperatorPar
                                  {.chain = within(arms.follower.arm.chain, begun->gates),
                                   .tool_m = arms.follower.arm.tool_m,
                                   .joint_stiffness_N_m_per_rad = arms.exact.follower_joint_stiffness_N_m_per_rad,
-                                  .passivity = {params.control.passivity, params.control.force_gain}},
+                                  .passivity = {params.control.passivity, params.control.force_gain},
+                                  .tare = params.control.tare},
                                  begun->gates, begun->tick, beside);
   if (!follows) return under("control.follower", follows.error());
   auto slave =

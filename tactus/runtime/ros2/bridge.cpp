@@ -82,6 +82,8 @@ struct Endpoints {
   std::optional<Writer<JointState>> grip;  ///< with a master of one axis
   Writer<Text> state;
   std::optional<Reader<JointState>> servo_jp;
+  std::optional<Reader<Text>> request;
+  std::optional<Writer<Text>> answer;
 };
 
 Result<Endpoints> open(const Bridge::Params& params) {
@@ -110,13 +112,25 @@ Result<Endpoints> open(const Bridge::Params& params) {
     if (!opened) return opened.error();
     servo_jp = *std::move(opened);
   }
-  return Endpoints{*std::move(participant), std::move(master), std::move(slave), grip, *state, servo_jp};
+  std::optional<Reader<Text>> request;
+  std::optional<Writer<Text>> answer;
+  if (params.ask) {
+    auto reader = participant->reader<Text>(dds_topic(params.name_space, "request"));
+    if (!reader) return reader.error();
+    request = *std::move(reader);
+    auto writer = participant->writer<Text>(dds_topic(params.name_space, "answer"));
+    if (!writer) return writer.error();
+    answer = *std::move(writer);
+  }
+  return Endpoints{
+      *std::move(participant), std::move(master), std::move(slave), grip, *state, servo_jp, request, answer};
 }
 
 }  // namespace
 
 struct Bridge::State {
-  State(Endpoints opened, double rate_Hz) : period_ns(std::llround(1e9 / rate_Hz)), dds(std::move(opened)) {}
+  State(Endpoints opened, const Params& params)
+      : period_ns(std::llround(1e9 / params.rate_Hz)), dds(std::move(opened)), ask(params.ask) {}
 
   // All that the thread that publishes touches in a tick in which nothing is due, on one cache line.
   alignas(64) std::int64_t period_ns;
@@ -126,6 +140,7 @@ struct Bridge::State {
   std::atomic<double> requested_m{nothing_m};  ///< the newest that was not taken
 
   alignas(64) Endpoints dds;
+  std::function<std::string(const std::string& line)> ask;
   telemetry::Ring<Told, 1024> snapshots;
   std::atomic<std::uint64_t> published{0};
   std::atomic<std::uint64_t> lost{0};
@@ -213,7 +228,13 @@ struct Bridge::State {
     while (snapshots.try_pop(told)) tell(told);
   }
 
+  void answer_requests() {
+    if (!dds.request) return;
+    for (const Text& line : dds.request->take()) send(*dds.answer, {ask(line.data)});
+  }
+
   void listen() {
+    answer_requests();
     if (!dds.servo_jp) return;
     for (const JointState& command : dds.servo_jp->take()) {
       if (command.position.size() == 1 && std::isfinite(command.position.front())) {
@@ -277,7 +298,7 @@ Result<Bridge> Bridge::create(const Params& params) {
   auto opened = open(params);
   if (!opened) return opened.error();
   // Its rings are large and stay where they are.
-  auto state = std::make_unique<State>(*std::move(opened), params.rate_Hz);
+  auto state = std::make_unique<State>(*std::move(opened), params);
   state->thread = std::thread([self = state.get()] { self->run(); });
   return Bridge(std::move(state));
 }

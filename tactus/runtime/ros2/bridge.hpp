@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,7 +47,8 @@ struct Snapshot {
 /// and subscribes to `operator/servo_jp` (`sensor_msgs/msg/JointState` with one position in m): where another program
 /// means the operator's hand to be. Of one site alone it publishes that device's topics, with the state as
 /// `master/state` or `slave/state`. Of devices with several joints `measured_js` has the force at each joint as its
-/// effort, and there is no `measured_cf`.
+/// effort, and there is no `measured_cf`. With `Params::ask` it takes lines on `request` and answers each on `answer`,
+/// both `std_msgs/msg/String`.
 ///
 /// The thread that steps the teleoperator calls `publish` and `take_request`, which touch a wait-free ring, the newest
 /// request and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
@@ -62,6 +64,9 @@ class Bridge {
     bool master = true;      ///< whether the topics of that device are published
     bool slave = true;
     bool takes_requests = true;  ///< whether `operator/servo_jp` is subscribed to
+    /// Takes a line of the topic `request`, as it is typed at a console, and returns what `answer` then publishes;
+    /// null: neither topic exists. Called by the bridge's thread.
+    std::function<std::string(const std::string& line)> ask = {};
   };
   struct Counts {
     std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device

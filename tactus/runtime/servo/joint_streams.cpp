@@ -27,6 +27,8 @@ JointStreams::JointStreams(const std::vector<StreamedJoint>& joints, std::option
     : joints_(joints),
       servo_(std::make_shared<telemetry::RecordStream<ServoRecord>>()),
       marks_(std::make_shared<telemetry::RecordStream<EpisodeMarkRecord>>()),
+      requests_(std::make_shared<telemetry::RecordStream<SiteRequestRecord>>()),
+      tares_(std::make_shared<telemetry::RecordStream<TareRecord>>()),
       start_(LogStart::now()) {
   for (const auto& [role, name] : enumerators(control::SiteRole{})) {
     if (only && *only != role) continue;
@@ -39,10 +41,21 @@ JointStreams::JointStreams(const std::vector<StreamedJoint>& joints, std::option
   for (const StreamedJoint& joint : joints_) joint_packets_.push_back(stream_of<PacketJointRecord>(joint));
 }
 
-void JointStreams::push(const station::Tick& tick, std::optional<EpisodeMark> mark) noexcept {
-  if (!mark) return;
-  marks_->push(static_cast<std::uint64_t>(tick.deadline_ns - origin_ns()),
-               {.tick = tick.number, .mark = static_cast<std::int64_t>(*mark)});
+void JointStreams::push(const station::Tick& tick, std::optional<EpisodeMark> mark,
+                        const std::optional<SiteCommand>& asked) noexcept {
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns());
+  if (mark) marks_->push(due_ns, {.tick = tick.number, .mark = static_cast<std::int64_t>(*mark)});
+  if (asked) requests_->push(due_ns, recorded(tick, *asked));
+}
+
+void JointStreams::push(const station::Tick& tick, control::SiteRole site, const Joints<double>& tared_Nm) noexcept {
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns());
+  for (std::size_t joint = 0; joint < tared_Nm.size(); ++joint) {
+    tares_->push(due_ns, {.tick = tick.number,
+                          .site = static_cast<std::int64_t>(site),
+                          .joint = static_cast<std::int64_t>(joint + 1),
+                          .lacking_Nm = tared_Nm[joint]});
+  }
 }
 
 void JointStreams::push(const station::Tick& tick, const control::JointPacket& packet) noexcept {

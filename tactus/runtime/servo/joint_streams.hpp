@@ -49,8 +49,11 @@ class JointStreams {
   void push(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
             const station::Step<Supervised>& done, const link::LinkCondition& condition,
             std::int64_t arrivals) noexcept;
-  /// What the operator marked at this tick, if anything. The same.
-  void push(const station::Tick& tick, std::optional<EpisodeMark> mark) noexcept;
+  /// What was asked for at this tick, and which mark it is, if anything. The same.
+  void push(const station::Tick& tick, std::optional<EpisodeMark> mark,
+            const std::optional<SiteCommand>& asked = {}) noexcept;
+  /// What a tare found, for each joint of the arm of this site. The same.
+  void push(const station::Tick& tick, control::SiteRole site, const Joints<double>& tared_Nm) noexcept;
   /// A packet that came to it at this tick, before that. The same.
   void push(const station::Tick& tick, const control::JointPacket& packet) noexcept;
 
@@ -70,7 +73,8 @@ class JointStreams {
 
   /// Calls `visit(topic, type_name, stream)` for each stream there is: `/master/site`, `/master/joint_1` and on, the
   /// slave's; of a site that is alone `/packets`, `/packets/joint_1` and on, what came over the link; `/servo`;
-  /// `/episodes`. The columns of a joint that turns are in rad and N m, and its types are called `Turning...`.
+  /// `/episodes`; `/requests`; `/tares`. The columns of a joint that turns are in rad and N m, and its types are called
+  /// `Turning...`.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& [role, name] : enumerators(control::SiteRole{})) {
@@ -92,6 +96,8 @@ class JointStreams {
     }
     visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo_);
     visit(std::string(telemetry::episodes_topic), "tactus_msgs/msg/EpisodeMarkRecord", *marks_);
+    visit(std::string("/requests"), "tactus_msgs/msg/SiteRequestRecord", *requests_);
+    visit(std::string("/tares"), "tactus_msgs/msg/TareRecord", *tares_);
   }
 
  private:
@@ -114,6 +120,8 @@ class JointStreams {
   std::vector<std::shared_ptr<telemetry::RecordStream<PacketJointRecord>>> joint_packets_;
   std::shared_ptr<telemetry::RecordStream<ServoRecord>> servo_;
   std::shared_ptr<telemetry::RecordStream<EpisodeMarkRecord>> marks_;
+  std::shared_ptr<telemetry::RecordStream<SiteRequestRecord>> requests_;
+  std::shared_ptr<telemetry::RecordStream<TareRecord>> tares_;
   LogStart start_;
 };
 

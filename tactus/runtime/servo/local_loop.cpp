@@ -47,7 +47,7 @@ bool LocalLoop::operator()(const station::Tick& tick) noexcept {
     gives_force = gives_force || records[i].motor_force_N != 0.0 || records[i].handle_force_N != 0.0;
   }
   if (streams_.servo) streams_.servo->push(due_ns, recorded(tick));
-  streams_.push(tick, console_.mark());
+  streams_.push(tick, console_.mark(), console_.taken());
   if (master_.person != nullptr) master_.person->follow(counters_[0].state() == SiteState::active);
   if (console_.ends_second()) end_second();
   return !console_.over(tick, works, gives_force);

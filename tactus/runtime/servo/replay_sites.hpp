@@ -286,7 +286,7 @@ Check replay_one(const telemetry::LogContent& content, control::SiteRole role, c
                                                             ": there is nothing to replay it from");
         }
         feed(device, logged[0]);
-        const control::SiteRequests pressed = requests_of(logged[0].pressed);
+        const control::SiteRequests pressed = requests_of(logged[0]);
         return std::visit(
             [&](auto& each) {
               return Rows{row_of_step(tick, pressed, each, station::step(each, device, *way, tick, pressed))};
@@ -315,7 +315,7 @@ Check replay_both(const telemetry::LogContent& content, std::size_t joints, Repl
                                  [&](std::int64_t, const station::Tick& tick, const Rows& logged) -> Result<Rows> {
                                    feed(master, logged[0]);
                                    feed(slave, logged[1]);
-                                   const control::SiteRequests pressed = requests_of(logged[0].pressed);
+                                   const control::SiteRequests pressed = requests_of(logged[0]);
                                    const auto done = pair->step(tick, pressed);
                                    return Rows{row_of_step(tick, pressed, pair->sites().master(), done.master),
                                                row_of_step(tick, pressed, pair->sites().slave(), done.slave)};

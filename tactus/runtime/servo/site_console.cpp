@@ -22,14 +22,16 @@ control::SiteRequests SiteConsole::step(const station::Tick& tick, control::Site
   if (exchange_->person_lost.load(std::memory_order_relaxed)) buttons_.lose_person();
   if (heard) heard_s_ += settings_.tick_s;
   mark_.reset();
+  taken_.reset();
   if (buttons_.ready()) {
-    SiteWord word{};
+    SiteCommand asked;
     if (settings_.arm_at_once && heard_s_ > settings_.listen_before_arming_s) {
       settings_.arm_at_once = false;
       buttons_.take(SiteWord::arm);
-    } else if (exchange_->words.try_pop(word)) {
-      mark_ = mark_of(word);
-      buttons_.take(word);
+    } else if (exchange_->words.try_pop(asked)) {
+      taken_ = asked;
+      mark_ = mark_of(asked.word);
+      buttons_.take(asked, state);
     }
   }
   control::SiteRequests pressed = buttons_.step(state);

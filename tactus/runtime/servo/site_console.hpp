@@ -30,6 +30,8 @@ class SiteConsole {
   control::SiteRequests step(const station::Tick& tick, control::SiteState state, bool heard) noexcept;
   /// What the operator marked at this tick, after `step`.
   [[nodiscard]] std::optional<EpisodeMark> mark() const noexcept { return mark_; }
+  /// What was asked for at this tick, whoever did, after `step`.
+  [[nodiscard]] const std::optional<SiteCommand>& taken() const noexcept { return taken_; }
   /// Whether a second is over with this tick. Once, after `step`.
   bool ends_second() noexcept;
   /// Whether it is all over: sites that are about to end do not work any more, and give no force or took too long to
@@ -47,6 +49,7 @@ class SiteConsole {
   SiteExchange* exchange_;
   SiteButtons buttons_;
   std::optional<EpisodeMark> mark_;
+  std::optional<SiteCommand> taken_;
   bool begun_ = false;
   std::int64_t start_ns_ = 0;
   std::int64_t now_ns_ = 0;

@@ -13,6 +13,7 @@ SiteStreams SiteStreams::of_one(control::SiteRole role) {
                       .packets = std::make_shared<Packets>(),
                       .servo = std::make_shared<Servo>(),
                       .marks = std::make_shared<EpisodeMarks>(),
+                      .requests = std::make_shared<Requests>(),
                       .origin_ns = start.monotonic_ns,
                       .start_unix_ns = start.unix_ns};
   streams.site[static_cast<std::size_t>(role)] = std::make_shared<Site>();
@@ -25,6 +26,7 @@ SiteStreams SiteStreams::of_both() {
           .packets = nullptr,
           .servo = std::make_shared<Servo>(),
           .marks = std::make_shared<EpisodeMarks>(),
+          .requests = std::make_shared<Requests>(),
           .origin_ns = start.monotonic_ns,
           .start_unix_ns = start.unix_ns};
 }

@@ -26,10 +26,12 @@ struct SiteStreams {
   using Packets = telemetry::RecordStream<PacketRecord>;
   using Servo = telemetry::RecordStream<ServoRecord>;
   using EpisodeMarks = telemetry::RecordStream<EpisodeMarkRecord>;
+  using Requests = telemetry::RecordStream<SiteRequestRecord>;
   std::array<std::shared_ptr<Site>, 2> site;  ///< by role
   std::shared_ptr<Packets> packets;           ///< of a site that is alone: what came over the link
   std::shared_ptr<Servo> servo;
   std::shared_ptr<EpisodeMarks> marks;
+  std::shared_ptr<Requests> requests;
   std::int64_t origin_ns = 0;      ///< of the times, on CLOCK_MONOTONIC
   std::int64_t start_unix_ns = 0;  ///< the same instant by the wall clock; 0: not stated
 
@@ -43,8 +45,10 @@ struct SiteStreams {
     return static_cast<std::uint64_t>(monotonic_ns - origin_ns);
   }
   [[nodiscard]] LogStart log_start() const noexcept { return {.monotonic_ns = origin_ns, .unix_ns = start_unix_ns}; }
-  /// What the operator marked at this tick, if anything. Real-time safe.
-  void push(const station::Tick& tick, std::optional<EpisodeMark> mark) const noexcept {
+  /// What was asked for at this tick, and which mark it is, if anything. Real-time safe.
+  void push(const station::Tick& tick, std::optional<EpisodeMark> mark,
+            const std::optional<SiteCommand>& asked) const noexcept {
+    if (requests && asked) requests->push(time_ns(tick.deadline_ns), recorded(tick, *asked));
     if (marks && mark) {
       marks->push(time_ns(tick.deadline_ns), {.tick = tick.number, .mark = static_cast<std::int64_t>(*mark)});
     }
@@ -61,6 +65,7 @@ struct SiteStreams {
     if (packets) visit(std::string("/packets"), "tactus_msgs/msg/PacketRecord", *packets);
     if (servo) visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo);
     if (marks) visit(std::string(telemetry::episodes_topic), "tactus_msgs/msg/EpisodeMarkRecord", *marks);
+    if (requests) visit(std::string("/requests"), "tactus_msgs/msg/SiteRequestRecord", *requests);
   }
 };
 

@@ -68,7 +68,7 @@ bool SiteLoop::operator()(const station::Tick& tick) noexcept {
     stream->push(streams_.time_ns(tick.deadline_ns), record);
   }
   if (streams_.servo) streams_.servo->push(streams_.time_ns(tick.deadline_ns), recorded(tick));
-  streams_.push(tick, console_.mark());
+  streams_.push(tick, console_.mark(), console_.taken());
   if (console_.ends_second()) end_second();
   const bool works = state != control::SiteState::configure && state != control::SiteState::fault;
   return !console_.over(tick, works, record.motor_force_N != 0.0 || record.handle_force_N != 0.0);

@@ -31,7 +31,7 @@ PacketHeadRecord head_of(const station::Tick& tick, const control::PacketOf<Payl
 constexpr bool control::SiteRequests::*buttons[]{&control::SiteRequests::align,  &control::SiteRequests::arm,
                                                  &control::SiteRequests::clear,  &control::SiteRequests::dead_man,
                                                  &control::SiteRequests::clutch, &control::SiteRequests::emergency_stop,
-                                                 &control::SiteRequests::leave};
+                                                 &control::SiteRequests::leave,  &control::SiteRequests::tare};
 
 template <class Supervised>
 SiteTickRecord of_site(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
@@ -42,6 +42,7 @@ SiteTickRecord of_site(const station::Tick& tick, const control::SiteRequests& p
   record.health = static_cast<std::int64_t>(done.health);
   record.age_s = site.heard().age_s;
   record.pressed = number_of(pressed);
+  record.asked_force_gain = pressed.force_gain;
   record.sent_sequence = done.output.packet.sequence;
   return record;
 }
@@ -127,11 +128,11 @@ std::int64_t number_of(const control::SiteRequests& pressed) noexcept {
   return number;
 }
 
-control::SiteRequests requests_of(std::int64_t pressed) noexcept {
-  control::SiteRequests requests;
+control::SiteRequests requests_of(const SiteTickRecord& record) noexcept {
+  control::SiteRequests requests{.force_gain = record.asked_force_gain};
   std::int64_t bit = 1;
   for (const auto button : buttons) {
-    requests.*button = (pressed & bit) != 0;
+    requests.*button = (record.pressed & bit) != 0;
     bit *= 2;
   }
   return requests;

@@ -23,6 +23,7 @@ struct SiteTickRecord : control::SiteRecord {
   double round_trip_s = 0.0;
   double link_silence_s = 0.0;
   std::int64_t pressed = 0;
+  double asked_force_gain = -1.0;
   std::int64_t arrivals = 0;
   std::int64_t sent_sequence = 0;
   static constexpr auto signals() {
@@ -39,7 +40,9 @@ struct SiteTickRecord : control::SiteRecord {
                      "Since any packet of the other site arrived, applied or not; 0 before the first."),
             observed("pressed", &R::pressed, units::none, "", "", "",
                      "By the operator, added up: 1 align, 2 arm, 4 clear, 8 dead-man switch, 16 clutch, 32 emergency "
-                     "stop, 64 leave."),
+                     "stop, 64 leave, 128 tare."),
+            observed("asked_force_gain", &R::asked_force_gain, units::none, "master", "hand", "",
+                     "By the operator, a page or a node, latest; -1 before that."),
             observed("arrivals", &R::arrivals, units::none, "", "", "",
                      "Packets that arrived over the link in this control cycle, each a record of the topic /packets."),
             observed("sent_sequence", &R::sent_sequence, units::none, "", "", "", "Of the packet that was sent.")});
@@ -147,6 +150,50 @@ struct EpisodeMarkRecord {
   }
 };
 
+inline constexpr control::Legend word_legend = control::legend<SiteWord>("The request: ");
+inline constexpr control::Legend source_legend = control::legend<RequestSource>("Who asked: ");
+
+/// What was asked of running sites, on the topic `/requests`.
+struct SiteRequestRecord {
+  std::int64_t tick = 0;
+  std::int64_t word = 0;
+  double value = 0.0;
+  std::int64_t source = 0;
+  static constexpr auto signals() {
+    using R = SiteRequestRecord;
+    return List{observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
+                observed("word", &R::word, units::none, "", "", "", word_legend.text),
+                observed("value", &R::value, units::none, "", "", "", "With set: the force gain; else 0."),
+                observed("source", &R::source, units::none, "", "", "", source_legend.text)};
+  }
+};
+/// Real-time safe.
+inline SiteRequestRecord recorded(const station::Tick& tick, const SiteCommand& asked) noexcept {
+  return {.tick = tick.number,
+          .word = static_cast<std::int64_t>(asked.word),
+          .value = asked.value,
+          .source = static_cast<std::int64_t>(asked.source)};
+}
+
+inline constexpr control::Legend role_legend = control::legend<control::SiteRole>("Of the arm of the: ");
+
+/// What a tare found at one joint, on the topic `/tares`: a record for each joint of the arm at the tick at which all
+/// of it acts.
+struct TareRecord {
+  std::int64_t tick = 0;
+  std::int64_t site = 0;
+  std::int64_t joint = 0;
+  double lacking_Nm = 0.0;
+  static constexpr auto signals() {
+    using R = TareRecord;
+    return List{observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
+                observed("site", &R::site, units::none, "", "", "", role_legend.text),
+                observed("joint", &R::joint, units::none, "", "", "", "From 1."),
+                observed("lacking_Nm", &R::lacking_Nm, Unit{"N m", "_Nm"}, "", "", "",
+                         "Added to the joint's gravity compensation.")};
+  }
+};
+
 /// A packet that came over the link, as the supervision of the site was handed it, but for its message.
 struct PacketHeadRecord {
   std::int64_t tick = 0;
@@ -202,7 +249,8 @@ control::PacketOf<Payload> packet_of(const PacketHeadRecord& head, const Payload
 
 /// What was pressed, as a number of `SiteLogRecord`, and back.
 std::int64_t number_of(const control::SiteRequests& pressed) noexcept;
-control::SiteRequests requests_of(std::int64_t pressed) noexcept;
+/// What was asked of a site at the tick of this record.
+control::SiteRequests requests_of(const SiteTickRecord& record) noexcept;
 
 /// The record of a step of a site; what only the link knows is left at 0.
 SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed,

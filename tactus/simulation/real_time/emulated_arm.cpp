@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/simulation/arm_plants/tool_operator.hpp>
 #include <tactus/simulation/real_time/emulated_arm.hpp>
 
 #include <algorithm>
@@ -24,9 +25,17 @@ struct EmulatedArm::Body {
   JointVector led_about_rad;
   JointVector inertia_kg_m2;  ///< of each joint there, the others at rest
   double led_s = 0.0;         ///< since the motors carry the arm
+  std::optional<Tapping> tapping;
+  std::optional<arm::Vector3> taps_from_m;  ///< once it does
+  std::optional<arm_plants::Wall> wall;
+  double contact_N = 0.0;
 
-  /// What the hand gives each joint.
+  /// What the hand that leads gives each joint.
   [[nodiscard]] double hand_Nm(Eigen::Index joint) const noexcept;
+  /// What the hand that taps does to the tool.
+  [[nodiscard]] arm::Vector3 tap_N(const arm_plants::ToolState& tool) noexcept;
+  /// All that acts on the tool.
+  [[nodiscard]] arm_plants::ToolForce on_tool() noexcept;
 };
 
 namespace {
@@ -73,6 +82,36 @@ double EmulatedArm::Body::hand_Nm(Eigen::Index joint) const noexcept {
          (firm * firm * away_rad + 2.0 * firm * slower_rad_per_s);
 }
 
+arm::Vector3 EmulatedArm::Body::tap_N(const arm_plants::ToolState& tool) noexcept {
+  const double t_s = tapping ? led_s - tapping->after_s : 0.0;
+  if (!(t_s > 0.0)) return arm::Vector3::Zero();
+  if (!taps_from_m) taps_from_m = tool.position_m;
+  constexpr double stiffness_N_per_m = 400.0, damping_N_s_per_m = 30.0, longest_away_s = 1.0, comes_in_s = 2.0;
+  const double away_s = std::min(0.5 * tapping->period_s, longest_away_s), turn = 2.0 * std::numbers::pi / away_s;
+  // The first one comes once the hand holds the tool firmly.
+  const double phase_s = t_s > comes_in_s ? std::fmod(t_s - comes_in_s, tapping->period_s) : tapping->period_s;
+  arm::Vector3 aim_m = *taps_from_m, aim_m_per_s = arm::Vector3::Zero();
+  if (phase_s < away_s) {
+    aim_m.z() -= 0.5 * tapping->depth_m * (1.0 - std::cos(turn * phase_s));
+    aim_m_per_s.z() = -0.5 * tapping->depth_m * turn * std::sin(turn * phase_s);
+  }
+  return std::min(1.0, t_s / comes_in_s) *
+         (stiffness_N_per_m * (aim_m - tool.position_m) + damping_N_s_per_m * (aim_m_per_s - tool.velocity_m_per_s));
+}
+
+arm_plants::ToolForce EmulatedArm::Body::on_tool() noexcept {
+  if (!touched && !tapping && !wall) return {};
+  const arm_plants::ToolState tool = plant.tool();
+  arm_plants::ToolForce force = touched ? touched(tool) : arm_plants::ToolForce{};
+  force.force_N += tap_N(tool);
+  if (wall) {
+    const arm::Vector3 contact = wall->force_N(tool);
+    contact_N = contact.norm();
+    force.force_N += contact;
+  }
+  return force;
+}
+
 EmulatedArm::EmulatedArm(std::unique_ptr<Body> body) : body_(std::move(body)) {}
 EmulatedArm::~EmulatedArm() = default;
 
@@ -95,6 +134,16 @@ Result<std::unique_ptr<EmulatedArm>> EmulatedArm::make(const Settings& settings)
   for (Eigen::Index i = 0; i < joints; ++i) {
     friction[i] = settings.chain.joints[static_cast<std::size_t>(i)].friction.coulomb_N_m + untold_Nm;
   }
+  std::optional<arm_plants::Wall> wall;
+  if (settings.surface) {
+    const auto contact = mechanics::Environment::make({.stiffness_N_per_m = settings.surface->stiffness_N_per_m,
+                                                       .damping_N_s_per_m = settings.surface->damping_N_s_per_m},
+                                                      Seconds{step_s});
+    if (!contact) return under("surface", contact.error());
+    wall = arm_plants::Wall{.point_m = plant->tool().position_m - settings.surface->gap_m * arm::Vector3::UnitZ(),
+                            .normal = arm::Vector3::UnitZ(),
+                            .contact = *contact};
+  }
   auto body = std::make_unique<Body>(Body{.plant = *std::move(plant),
                                           .position_rad = at,
                                           .velocity_rad_per_s = none,
@@ -105,7 +154,10 @@ Result<std::unique_ptr<EmulatedArm>> EmulatedArm::make(const Settings& settings)
                                           .touched = settings.touched,
                                           .led = settings.led,
                                           .led_about_rad = at,
-                                          .inertia_kg_m2 = chain->mass_matrix(at).diagonal()});
+                                          .inertia_kg_m2 = chain->mass_matrix(at).diagonal(),
+                                          .tapping = settings.tapping,
+                                          .taps_from_m = {},
+                                          .wall = wall});
   return std::unique_ptr<EmulatedArm>(new EmulatedArm(std::move(body)));
 }
 
@@ -117,6 +169,7 @@ double EmulatedArm::velocity_rad_per_s(std::size_t motor) const noexcept {
   return body_->velocity_rad_per_s[static_cast<Eigen::Index>(motor)];
 }
 arm_plants::ToolState EmulatedArm::tool() const { return body_->plant.tool(); }
+double EmulatedArm::contact_N() const noexcept { return body_->contact_N; }
 bool EmulatedArm::held() const noexcept { return body_->held; }
 
 void EmulatedArm::step(std::span<const double> torque_Nm) noexcept {
@@ -132,7 +185,7 @@ void EmulatedArm::step(std::span<const double> torque_Nm) noexcept {
   body.led_s += step_s;
   for (Eigen::Index i = 0; i < body.position_rad.size(); ++i) body.torque.torque[i] += body.hand_Nm(i);
   body.plant.write(body.torque);
-  body.plant.step(body.touched ? body.touched(body.plant.tool()) : arm_plants::ToolForce{});
+  body.plant.step(body.on_tool());
   body.position_rad = body.plant.link_position();
   body.velocity_rad_per_s = body.plant.link_velocity();
 }

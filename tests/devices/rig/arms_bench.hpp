@@ -127,7 +127,7 @@ class VirtualLink final : public MotorLink {
 /// The pair. Hands and stands hold both arms until their motors carry them; then nobody does, but where a test says so.
 struct Bench {
   Faults faults;  ///< of the follower
-  ArmPairSetup setup = setup_of();
+  ArmPairSetup setup;
   RigPair pair = *as_arms(pair_of(), setup.params, setup);
   double apart_rad = 0.15;                ///< of joint 4, leader and follower
   std::optional<arm::Vector3> hand_at_m;  ///< where a hand holds the leader's tool, on a spring
@@ -152,9 +152,10 @@ struct Bench {
   RigSecond last;
   std::int64_t number = 0;
 
-  /// `believed` is what the sites take both arms for; without it they are right.
-  explicit Bench(Faults of_follower = {}, const std::optional<arm::Chain::Params>& believed = {})
-      : faults(std::move(of_follower)) {
+  /// `believed` is what the sites take both arms for; without it they are right. `more` changes keys of the experiment.
+  explicit Bench(Faults of_follower = {}, const std::optional<arm::Chain::Params>& believed = {},
+                 const std::vector<std::string>& more = {})
+      : faults(std::move(of_follower)), setup(setup_of(more)) {
     // Motors are asked before a tick is.
     advance(400 * ms);
     start({.listen_before_arming_s = 0.1, .arm_at_once = true}, believed);

@@ -40,8 +40,11 @@ class RigReplay : public ::testing::Test {
     ASSERT_TRUE(log) << describe(log.error());
     bench.loop->leave_in(streams);
     ASSERT_TRUE(bench.couple());
-    bench.exchange.words.try_push(runtime::SiteWord::release);
-    bench.run(1.0);
+    bench.exchange.words.try_push({runtime::SiteWord::set, 0.25});
+    bench.run(0.5);
+    bench.exchange.words.try_push(runtime::SiteWord::tare);
+    bench.run(5.0);
+    EXPECT_EQ(bench.last.follower_tare.report.state, control::TareState::done);
     bench.exchange.words.try_push(runtime::SiteWord::press);
     bench.run(1.0);
     bench.follower_link->cut = true;

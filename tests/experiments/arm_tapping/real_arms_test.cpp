@@ -137,13 +137,14 @@ TEST(RealArms, AFurtherDelayOfTheDrivesIsThatOfASlowerBus) {
   EXPECT_EQ(moves_at(3), 4);
 }
 
-TEST(RealArms, ATareIsRefusedForMotorsForFaultsAndForFourChannelControl) {
+TEST(RealArms, ATareIsRefusedForFaultsAndForFourChannelControl) {
   ArmTappingParams params = shipped_with({});
   EXPECT_EQ(station::refuse_tare(params), std::nullopt);
   params.control.tare.cycles = 2;
+  EXPECT_EQ(station::refuse_tare(params)->parameter, "control.tare.cycles");
   const ArmPairSetup setup = *set_up_arm_pair(params, shipped_folder);
   const Joints<station::DeviceLimits> limits(setup.leader.joints.size());
-  EXPECT_EQ(station::supervise_arms(params, setup, limits, limits, {}).error().parameter, "control.tare.cycles");
+  EXPECT_TRUE(station::supervise_arms(params, setup, limits, limits, {})) << "on a rig an operator asks for it";
   params.control.method = arm_control::ArmMethod::four_channel;
   EXPECT_EQ(set_up_arm_pair(params, shipped_folder).error().parameter, "control.tare.cycles");
 }

@@ -131,9 +131,10 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
   active_ = active;
   if (streams_ != nullptr) {
     streams_->push(tick, pressed, pair_, done);
-    streams_->push(tick, console_.mark());
+    streams_->push(tick, console_.mark(), console_.taken());
   }
   keep_books(done);
+  look_at_tares(tick);
   bool works = false, gives_force = false;
   for (const std::int64_t each : {done.master.output.record.state, done.slave.output.record.state}) {
     const auto of_site = static_cast<SiteState>(each);
@@ -169,6 +170,15 @@ void RigLoop::note_fault() noexcept {
   look(pair_.sites().slave().site().gates(), false);
 }
 
+/// What a tare found goes into the log once.
+void RigLoop::look_at_tares(const station::Tick& tick) noexcept {
+  const auto look = [&](RigSecond::Tare& tare, const auto& site, control::SiteRole role) noexcept {
+    if (note_tare(tare, site) && streams_ != nullptr) streams_->push(tick, role, tare.found_Nm);
+  };
+  look(second_.leader_tare, pair_.sites().master(), control::SiteRole::master);
+  look(second_.follower_tare, pair_.sites().slave(), control::SiteRole::slave);
+}
+
 void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) noexcept {
   const auto leader = static_cast<SiteState>(done.master.output.record.state);
   const auto follower = static_cast<SiteState>(done.slave.output.record.state);
@@ -176,6 +186,7 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   count(totals_, second_.leader, leader);
   second_.leader = leader;
   second_.follower = follower;
+  second_.force_gain = done.master.output.record.force_gain;
   // The one that only went with the other knows no cause.
   const bool of_follower = stands(follower) && cause(done.slave.output.record.cause) != control::SiteCause::peer;
   second_.cause = cause(of_follower ? done.slave.output.record.cause : done.master.output.record.cause);

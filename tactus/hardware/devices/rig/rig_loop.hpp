@@ -66,6 +66,7 @@ class RigLoop {
   void judge_distance() noexcept;
   void note_troubles() noexcept;
   void note_fault() noexcept;
+  void look_at_tares(const station::Tick& tick) noexcept;
   void keep_books(const station::JointLocalTeleoperator::Output& done) noexcept;
 
   runtime::SiteConsole console_;

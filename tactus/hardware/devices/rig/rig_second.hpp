@@ -39,6 +39,13 @@ struct RigSecond {
   double farthest = 0.0;     ///< of a joint from its leader
   std::size_t joint = 0;     ///< which one
   bool too_far = false;      ///< so that nobody can arm
+  double force_gain = 0.0;   ///< of the leader, at its end; 0 without a gain that can change
+  /// Of a side's latest tare; what it found is added to the gravity compensation of each joint, in N m.
+  struct Tare {
+    control::TareReport report;
+    Joints<double> found_Nm;
+  };
+  Tare leader_tare, follower_tare;
   runtime::LinkSecond link;  ///< where the other side is elsewhere
 };
 
@@ -98,6 +105,15 @@ void note_probe(RigSecond& second, const Site& site, bool of_leader) noexcept {
   if (found.report.verdict == control::ProbeVerdict::none) return;
   second.probe = found;
   second.probe_of_leader = of_leader;
+}
+/// Notes how a side's tare goes; true at the tick at which its result has come in.
+template <class Site>
+bool note_tare(RigSecond::Tare& tare, const Site& site) noexcept {
+  const control::TareState before = tare.report.state;
+  tare.report = site.site().tare();
+  if (tare.report.state == before || tare.report.state != control::TareState::done) return false;
+  tare.found_Nm = site.site().tared_N();
+  return true;
 }
 /// Notes a motor that does not do as it is commanded, the first one.
 inline void note_motor(RigSecond& second, const arm_control::MotorWatch::Found& found, bool of_leader) noexcept {

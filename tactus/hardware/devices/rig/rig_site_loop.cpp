@@ -142,7 +142,12 @@ void RigSiteLoop::step(Site& site, const station::Tick& tick, const control::Sit
   }
   if (streams_ != nullptr) {
     streams_->push(tick, pressed, site, done, link_.condition(), link_.arrivals());
-    streams_->push(tick, console_.mark());
+    streams_->push(tick, console_.mark(), console_.taken());
+  }
+  second_.force_gain = done.output.record.force_gain;
+  RigSecond::Tare& tare = leads() ? second_.leader_tare : second_.follower_tare;
+  if (note_tare(tare, site) && streams_ != nullptr) {
+    streams_->push(tick, leads() ? SiteRole::master : SiteRole::slave, tare.found_Nm);
   }
   count(totals_, own_, now);
   own_ = now;

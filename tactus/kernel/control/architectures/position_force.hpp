@@ -166,6 +166,9 @@ class PositionForceMaster {
     applied(output.motor_force_N);
     return output;
   }
+  [[nodiscard]] double force_gain() const noexcept { return gains_.force_gain; }
+  /// From the next tick on. Real-time safe.
+  void set_force_gain(double gain) noexcept { gains_.force_gain = gain; }
   void reset() noexcept {
     stages_.cancellation.reset();
     stages_.damping.reset();

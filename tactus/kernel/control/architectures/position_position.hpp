@@ -57,6 +57,9 @@ class PositionPositionMaster {
     applied(output.motor_force_N);
     return output;
   }
+  [[nodiscard]] double force_gain() const noexcept { return display_.force_gain(); }
+  /// From the next tick on. Real-time safe.
+  void set_force_gain(double gain) noexcept { display_.set_force_gain(gain); }
   void reset() noexcept {
     display_.reset();
     coupling_.reset();

@@ -74,6 +74,7 @@ double ArmFaultBench::wired_s() const {
 }
 
 Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const std::filesystem::path& folder) {
+  if (Check wrong = station::refuse_tare(params)) return *std::move(wrong);
   auto setup = set_up_arm_pair(params, folder);
   if (!setup) return setup.error();
   const Joints<station::DeviceLimits> leader_limits = limits_of(setup->leader, params),
