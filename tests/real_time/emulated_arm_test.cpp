@@ -194,7 +194,9 @@ TEST(EmulatedArm, AHandTapsWithItAndItsToolMeetsASurfaceBetweenTheLifts) {
     const arm::JointVector torque = model.gravity_torque(q) - 0.3 * v;
     arm.step(std::span(torque.data(), joints));
     const double below_m = (arm.tool().position_m - began_m).z();
-    if (step < 24'000) EXPECT_EQ(arm.contact_N(), 0.0) << "nobody taps yet";
+    if (step < 24'000) {
+      EXPECT_EQ(arm.contact_N(), 0.0) << "nobody taps yet";
+    }
     const bool now = arm.contact_N() > 0.5;
     touches += now && !touched ? 1 : 0;
     touched = now || (touched && below_m < -0.015);  // what bounces at the surface touches once
