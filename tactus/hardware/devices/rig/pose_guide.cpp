@@ -33,7 +33,8 @@ std::vector<arm::JointVector> guide_poses(const arm::Chain::Params& arm) {
 }
 
 std::vector<GuideFinding> judge_poses(std::span<const arm::JointVector> poses, std::span<const arm::JointVector> read) {
-  constexpr double moved_share = 0.3, least_ratio = 0.7, most_ratio = 1.0 / least_ratio, zero_rad = 0.25, placed_rad = 0.21;
+  constexpr double moved_share = 0.3, least_ratio = 0.7, most_ratio = 1.0 / least_ratio, zero_rad = 0.25,
+                   placed_rad = 0.21;
   const Eigen::Index joints = poses[0].size();
   const auto expected = [&](Eigen::Index i) { return poses[pose_of(i)][i] - poses[0][i]; };
   /// How far joint i turned by its reading in the pose in which joint `with` is turned.

@@ -38,8 +38,8 @@ struct GuideFinding {
 };
 
 /// One finding for each joint; `read` has a reading for each pose. A hand places a joint within some 0.1 rad, so a gear
-/// within 30 % or 0.21 rad and a zero within 0.25 rad pass. Joints of equal parity that are swapped are not found: they turn
-/// together.
+/// within 30 % or 0.21 rad and a zero within 0.25 rad pass. Joints of equal parity that are swapped are not found: they
+/// turn together.
 std::vector<GuideFinding> judge_poses(std::span<const arm::JointVector> poses, std::span<const arm::JointVector> read);
 
 }  // namespace tactus::devices
