@@ -22,22 +22,14 @@ Result<JointLowPass> low_pass(const std::string& name, double cutoff_Hz, const E
   return JointLowPass::make(cutoffs(cutoff_Hz, each, joints), dt);
 }
 
-/// What moves a leader in a tare, over the bus: firm enough that friction takes a quarter of the amplitude, and with
-/// dampers that two cycles of delay bear.
-Tare::Drives tare_drives(const ArmLeader::Arm& arm, const arm::Chain& chain, const Tare::Params& params, Seconds dt) {
-  constexpr double over_friction = 4.0, slowest_rad_per_s = 12.0, damping_ratio = 0.7, share_a_tick = 0.3;
-  const JointVector rest = JointVector::Zero(chain.joints());
-  const JointVector inertia = chain.mass_matrix(rest).diagonal();
-  Tare::Drives drives{.stiffness_N_m_per_rad = rest, .damping_N_m_s_per_rad = rest};
-  for (Eigen::Index i = 0; i < rest.size(); ++i) {
-    const double coulomb_N_m = arm.carried.joints[static_cast<std::size_t>(i)].friction.coulomb_N_m;
-    const double stiffness =
-        over_friction * coulomb_N_m / params.amplitude_rad + inertia[i] * slowest_rad_per_s * slowest_rad_per_s;
-    drives.stiffness_N_m_per_rad[i] = stiffness;
-    drives.damping_N_m_s_per_rad[i] =
-        std::min(2.0 * damping_ratio * std::sqrt(stiffness * inertia[i]), share_a_tick * inertia[i] / dt.value);
+/// Of a spring that moves each joint against its Coulomb friction in a tare: that takes a quarter of the amplitude.
+JointVector stiffness_over_friction(const arm::Chain::Params& arm, double amplitude_rad) {
+  constexpr double over_friction = 4.0;
+  JointVector stiffness(static_cast<Eigen::Index>(arm.joints.size()));
+  for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
+    stiffness[i] = over_friction * arm.joints[static_cast<std::size_t>(i)].friction.coulomb_N_m / amplitude_rad;
   }
-  return drives;
+  return stiffness;
 }
 
 /// Whether the drives pull the leader to where the follower is.
@@ -57,6 +49,8 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
       washed_damping_(pulls(params.method) ? 0.0 : params.damping_washout_Hz, effort_limits(arm.carried), dt),
       tare_(tare),
+      over_friction_(stiffness_over_friction(arm.carried, arm.tare.amplitude_rad)),
+      dt_s_(dt.value),
       model_(model),
       factr_(params.factr, arm.carried, chain),
       avoidance_(params.avoidance, chain.joints()),
@@ -104,8 +98,9 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   const auto command =
       low_pass("command_low_pass", params.command_low_pass_Hz, params.command_low_pass_each, joints, dt);
   if (!command) return command.error();
-  const auto tare = SiteTare::make(arm.tare, arm.carried, *chain, tare_drives(arm, *chain, arm.tare, dt),
-                                   arm.lacking_N_m.size() == joints ? arm.lacking_N_m : JointVector::Zero(joints), dt);
+  const auto tare =
+      SiteTare::make(arm.tare, arm.carried, *chain, {JointVector::Zero(joints), JointVector::Zero(joints)},
+                     arm.lacking_N_m.size() == joints ? arm.lacking_N_m : JointVector::Zero(joints), dt);
   if (!tare) return under("tare", tare.error());
   return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
                    *tare, dt);
@@ -114,6 +109,17 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
 std::optional<double> ArmLeader::force_gain() const noexcept {
   if (pulls(params_.method) || passivity_.counts()) return std::nullopt;
   return params_.force_gain;
+}
+
+/// What moves the leader in a tare over the bus, in this pose: firm, and with dampers that two cycles of delay bear.
+Tare::Drives ArmLeader::tare_drives(const JointVector& position) const noexcept {
+  constexpr double firm_rad_per_s = 20.0, damping_ratio = 0.7, share_a_tick = 0.3;
+  const JointVector inertia = chain_.mass_matrix(position).diagonal();
+  const JointVector stiffness = over_friction_ + firm_rad_per_s * firm_rad_per_s * inertia;
+  return {
+      .stiffness_N_m_per_rad = stiffness,
+      .damping_N_m_s_per_rad =
+          (2.0 * damping_ratio * stiffness.cwiseProduct(inertia).cwiseSqrt()).cwiseMin(share_a_tick / dt_s_ * inertia)};
 }
 
 ToolJacobian ArmLeader::tool_at(const JointVector& position) const noexcept {
@@ -152,6 +158,7 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   const bool reflects = !pulls(params_.method);
   Output output;
   output.support = feed_forward_.torque(reading);
+  if (tare_.starts()) tare_.use(tare_drives(reading.position));
   if (tare_.acts()) {
     const ArmCommand moves = tare_.step(reading);
     output.support.array() += moves.stiffness.array() * (moves.position - reading.position).array() -

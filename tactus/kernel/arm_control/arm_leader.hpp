@@ -176,6 +176,7 @@ class ArmLeader {
   ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
             const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, const SiteTare& tare,
             Seconds dt);
+  [[nodiscard]] Tare::Drives tare_drives(const JointVector& position) const noexcept;
   [[nodiscard]] ToolJacobian tool_at(const JointVector& position) const noexcept;
   [[nodiscard]] JointVector beside_display(const ArmReading& reading, const JointVector& support,
                                            const JointVector& external) noexcept;
@@ -189,6 +190,8 @@ class ArmLeader {
   ToolLimit damping_limit_;
   WashedDamping washed_damping_;
   SiteTare tare_;
+  JointVector over_friction_;  ///< stiffness with which a tare overcomes it
+  double dt_s_;
   InducedMotion model_;
   FactrLaw factr_;
   FeedbackAvoidance avoidance_;

@@ -28,6 +28,9 @@ class SiteTare {
   [[nodiscard]] bool moves() const noexcept { return report_.state == control::TareState::under_way && !comes_in_; }
   /// While it moves the joints, and while that fades: then `step` or `away_rad` once a tick.
   [[nodiscard]] bool acts() const noexcept { return moves() || limit_share_ < 1.0; }
+  /// Before the first step of one: what it uses instead of the drives as made.
+  [[nodiscard]] bool starts() const noexcept { return moves() && tare_.starts(); }
+  void use(const Tare::Drives& drives) noexcept { tare_.use(drives); }
   /// What moves the joints: positions to which their drives pull, by `drives`, about where they were. It comes and goes
   /// within a cycle each. Real-time safe.
   ArmCommand step(const ArmReading& reading) noexcept;

@@ -67,6 +67,10 @@ class Tare {
   [[nodiscard]] std::int64_t cycle_ticks() const noexcept { return first_; }
   /// As made: the next step is its first.
   void restart() noexcept;
+  /// Before its first step.
+  [[nodiscard]] bool starts() const noexcept { return tick_ == 0; }
+  /// Instead of the drives as made.
+  void use(const Drives& drives) noexcept { drives_ = drives; }
 
  private:
   Tare(const Params& params, const arm::Chain& model, const Drives& drives, Seconds dt);

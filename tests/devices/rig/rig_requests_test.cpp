@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -51,14 +50,7 @@ TEST(RigRequests, AForceGainThatChangesAThousandTimesInContactStepsNoTorque) {
   ASSERT_TRUE(bench.couple());
   press_on_a_wall(bench);
   ASSERT_GT(bench.contact.force_N.z(), 1.0);
-  {
-    int l = 0;
-    for (int i = 0; i < 6000; ++i) {
-      bench.run(0.002);
-      l += bench.loop->sites().master().site().limit() == control::ActiveLimit::rate;
-    }
-    std::printf("without changes %d\n", l);
-  }
+  bench.run(2.0);
   const auto& leader = bench.loop->sites().master();
   const auto passed_Nm = [&] {
     arm::JointVector all(static_cast<Eigen::Index>(joints));
@@ -79,16 +71,12 @@ TEST(RigRequests, AForceGainThatChangesAThousandTimesInContactStepsNoTorque) {
       bench.run(tick_s);
       const arm::JointVector now_Nm = passed_Nm();
       most_step_Nm = std::max(most_step_Nm, (now_Nm - before_Nm).cwiseAbs().maxCoeff());
-      const arm::JointVector previous_Nm = before_Nm;
       before_Nm = now_Nm;
       EXPECT_LE(std::fabs(leader.force_gain().gain() - gain), rate_per_s * tick_s * (1.0 + 1e-9));
       gain = leader.force_gain().gain();
       lowest = std::min(lowest, gain);
       highest = std::max(highest, gain);
       limited_ticks += leader.site().limit() == control::ActiveLimit::rate ? 1 : 0;
-      if (leader.site().limit() == control::ActiveLimit::rate)
-        std::printf("rate at %d %d step %g gain %g contact %g\n", change, tick,
-                    (now_Nm - previous_Nm).cwiseAbs().maxCoeff(), gain, bench.contact.force_N.z());
       in_contact += bench.contact.force_N.z() > 0.0 ? 1 : 0;
     }
   }
@@ -140,9 +128,9 @@ TEST(RigRequests, ATareFindsWhatBothModelsOfGravityLackAndContactStaysFelt) {
       << "nobody allowed it";
   bench.exchange.allow({.most_force_gain = 0.5, .file_force_gain = 0.5, .tares = true});
   ASSERT_TRUE(bench.exchange.ask("tare", SiteRole::master, RequestSource::page));
-  bench.run(1.0);
+  bench.run(2.5);
   EXPECT_EQ(bench.last.leader_tare.report.state, TareState::under_way);
-  bench.run(5.0);
+  bench.run(3.5);
   EXPECT_EQ(bench.last.leader, SiteState::armed) << "until somebody presses the dead-man switch";
   ASSERT_EQ(bench.last.leader_tare.report.state, TareState::done) << text_of(bench);
   ASSERT_EQ(bench.last.follower_tare.report.state, TareState::done) << text_of(bench);
