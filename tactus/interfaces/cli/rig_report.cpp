@@ -198,9 +198,9 @@ std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<
     line += ", round trip " + report::fixed(1e3 * second.link.round_trip_s, 2) + " ms, lost " +
             report::fixed(100.0 * second.link.loss_fraction, 1) + " %";
   }
+  if (second.force_gain > 0.0) line += ", force gain " + rounded_number(second.force_gain);
   if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
-  if (second.force_gain > 0.0) line += ", force gain " + rounded_number(second.force_gain);
   if (only != control::SiteRole::slave) line += words_of(second.leader_tare, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_tare, "follower", *pair.follower);
   return line + words_of_fault(second, pair) + words_of_motor(second, pair) + words_of_support(second, pair) +

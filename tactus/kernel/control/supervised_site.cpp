@@ -161,7 +161,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   const Shares shares{.force = supervision_.blend(follows),
                       .support = supervision_.carry(here_m),
                       .stops = !follows && !supervision_.probes()};
-  const auto holds = holding_law(supervision_.support(), supervision_.hold(), here_m);
+  const auto holds = holding_law(supervision_.support(), supervision_.hold(tared_), here_m);
   Output output{.site = site_.step(sensors, shares, input.elapsed_ticks, probe_N, holds),
                 .packet = {},
                 .record = supervision_.record()};
@@ -217,7 +217,7 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   const double support = supervision_.carry(here_m);
   const bool pulls = works && !supervision_.probes() && !supervision_.is_held();
   const Shares shares{.force = supervision_.blend(pulls), .support = support, .stops = !works};
-  const auto holds = holding_law(supervision_.support(), supervision_.hold(), here_m);
+  const auto holds = holding_law(supervision_.support(), supervision_.hold(tared_), here_m);
   Output output{.site = site_.step(sensors, shares, input.elapsed_ticks, probe_N, holds),
                 .packet = {},
                 .record = supervision_.record()};

@@ -222,8 +222,12 @@ class SupervisionOf {
   /// The share of gravity compensation: rises to 1 wherever the site has power and is not released, falls to 0 in
   /// `configure`; where it releases 0 at once, for the gate to ramp. Once, after `decide`.
   double carry(const Lengths& at_m) noexcept;
-  /// The share of the law that holds the device while its support comes in. Once, after `blend` and `carry`.
-  double hold() noexcept { return support_.hold(share_); }
+  /// The share of the law that holds the device while its support comes in. The coupling takes its place, and so does
+  /// what `moves` the device. Once, after `blend` and `carry`.
+  double hold(bool moves) noexcept {
+    moved_share_ = moves ? std::min(moved_share_ + blend_step_, 1.0) : 0.0;
+    return support_.hold(std::max(share_, moved_share_));
+  }
   /// Whether all of it has come in, at the latest tick, and was judged where that is wanted.
   [[nodiscard]] bool carries() const noexcept { return support_.share() == 1.0 && !support_.rises(); }
   [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return support_; }
@@ -344,6 +348,7 @@ class SupervisionOf {
   bool probing_ = false;              ///< the trial is under way
   bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device did not respond or moved
   double share_ = 0.0;
+  double moved_share_ = 0.0;  ///< grows while something else moves the device
   SiteState before_ = SiteState::configure;
 };
 using Supervision = SupervisionOf<Message>;
