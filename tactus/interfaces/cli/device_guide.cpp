@@ -9,11 +9,12 @@
 #include <tactus/simulation/experiments/arm_tapping/arm_pair.hpp>
 
 #include <algorithm>
-#include <array>
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <numbers>
+#include <thread>
 #include <vector>
 
 namespace tactus::cli {
@@ -95,10 +96,19 @@ std::string words_of(const GuideFinding& finding, const RigJoint& joint, const R
   return {};
 }
 
-/// What the motors of the arm read now.
+/// What the motors of the arm read now, once all of them have responded.
 Result<JointVector> reading_of(const RigSide& side, const devices::MotorLink& bus,
                                const std::vector<std::size_t>& places) {
-  const auto now = bus.newest();
+  constexpr int most_looks = 100;
+  constexpr std::chrono::milliseconds between_looks{20};
+  const auto responds = [&places](const devices::BusReadings& now) {
+    return std::ranges::all_of(places, [&now](std::size_t place) { return now.motors[place].answers > 0; });
+  };
+  auto now = bus.newest();
+  for (int look = 0; look < most_looks && !(now && responds(*now)); ++look) {
+    std::this_thread::sleep_for(between_looks);
+    now = bus.newest();
+  }
   JointVector read(static_cast<Eigen::Index>(places.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const RigJoint& joint = side.joints[places[i]];
