@@ -3,8 +3,8 @@
 #include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
 #include <tactus/hardware/wire/paced.hpp>
 #include <tactus/interfaces/cli/emulate.hpp>
+#include <tactus/interfaces/cli/internal/touch_options.hpp>
 #include <tactus/interfaces/cli/real_between.hpp>
-#include <tactus/interfaces/cli/touch_options.hpp>
 #include <tactus/simulation/real_time/emulated_arm.hpp>
 
 #include <algorithm>

@@ -3,13 +3,13 @@
 #include <tactus/hardware/devices/rig/rig.hpp>
 #include <tactus/interfaces/cli/commands.hpp>
 #include <tactus/interfaces/cli/experiment_options.hpp>
+#include <tactus/interfaces/cli/internal/touch_options.hpp>
 #include <tactus/interfaces/cli/line_writer.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
 #include <tactus/interfaces/cli/real_between.hpp>
 #include <tactus/interfaces/cli/rig_run.hpp>
 #include <tactus/interfaces/cli/servo_options.hpp>
 #include <tactus/interfaces/cli/supervised_run.hpp>
-#include <tactus/interfaces/cli/touch_options.hpp>
 
 #include <cstdint>
 #include <memory>
