@@ -49,8 +49,7 @@ constexpr auto enumerators(ActiveLimit) {
 /// The longest time that a force may take to fall to zero once it must.
 inline constexpr double longest_stop_s = 0.25;
 inline constexpr const char* stop_time_doc =
-    "Longest time in which the force falls to zero when the site stops; it takes effect if the fall at the rate limit "
-    "would take longer.";
+    "Longest time in which the force falls to zero when the site stops, if the rate limit is slower.";
 
 /// The very last stage before an actuator: a finite force, within its limit, that changes no faster than its rate
 /// limit.
