@@ -93,7 +93,7 @@ void run_map_on_threads(benchmark::State& state) {
   request.base = tap(50e-6);
   request.axes = {*parse_axis("control.force_gain=0.5:30:64"),
                   *parse_axis("environment.stiffness_N_per_m=1e3:1e5:64[log]")};
-  tasks::Threads threads(static_cast<std::size_t>(state.range(0)));
+  tactus::tasks::Threads threads(static_cast<std::size_t>(state.range(0)));
   request.place.engine = &threads;
   double ticks = 0.0;
   for (auto _ : state) ticks += run_map(request, [](double) {})->ticks;
