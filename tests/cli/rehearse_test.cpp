@@ -105,7 +105,8 @@ TEST_F(Rehearse, WhatCannotBeRehearsedIsRefusedWithTheRemedy) {
   EXPECT_NE(refusal(damiao, {"--led", "0.3,5"}).find("--led: only arms are led"), std::string::npos);
   EXPECT_NE(refusal(damiao, {"--wall", "0.02"}).find("--wall: only arms"), std::string::npos);
   EXPECT_NE(refusal(damiao, {"--tapped", "0.03,2,5"}).find("--tapped: only arms"), std::string::npos);
-  EXPECT_NE(refusal(damiao, {"--requests"}).find("--requests: nobody could ask: add --live or --ros2"),
+  EXPECT_NE(refusal(damiao, {"--requests"})
+                .find("--requests: requests come from a page or a ROS 2 node: add --live or --ros2"),
             std::string::npos);
   EXPECT_NE(refusal(damiao, {"--peer", "127.0.0.1:7001"}).find("--peer: there is no link where both sites run"),
             std::string::npos);

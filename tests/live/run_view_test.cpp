@@ -90,10 +90,10 @@ TEST(RunView, WhereTheOperatorAllowsItAViewerAsksAndIsAnswered) {
   double gain = 0.5;
   RunView view(About{}, RunRequests{.ask = [&](const std::string& line) -> Check {
                                       asked.push_back(line);
-                                      if (line != "set force_gain 2.000000") return std::nullopt;
+                                      if (line != "set force_gain 1.2345678901") return std::nullopt;
                                       return Error{.code = ErrorCode::out_of_bounds,
                                                    .parameter = "force_gain",
-                                                   .message = "2 is refused: it may be 0 to 0.5",
+                                                   .message = "1.23 is refused: it may be 0 to 0.5",
                                                    .place = {}};
                                     },
                                     .force_gain = [&] { return std::optional(gain); }});
@@ -103,7 +103,7 @@ TEST(RunView, WhereTheOperatorAllowsItAViewerAsksAndIsAnswered) {
   RawClient client(server.port());
   ASSERT_TRUE(client.open(server.port()));
   ASSERT_TRUE(client.text_with("\"/tick\""));
-  client.say(R"({"op":"setParameters","parameters":[{"name":"force_gain","value":2.0}]})");
+  client.say(R"({"op":"setParameters","parameters":[{"name":"force_gain","value":1.2345678901}]})");
   EXPECT_TRUE(client.text_with("0 to 0.5"));
   EXPECT_TRUE(client.text_with("parameterValues"));
   client.say(R"({"op":"setParameters","parameters":[{"name":"damping","value":2.0}]})");
@@ -115,7 +115,7 @@ TEST(RunView, WhereTheOperatorAllowsItAViewerAsksAndIsAnswered) {
     client.say_binary(std::string("\x01\x01\x00\x00\x00", 5) + nonsense);
     EXPECT_TRUE(client.text_with("a request is JSON")) << nonsense;
   }
-  EXPECT_EQ(asked, (std::vector<std::string>{"set force_gain 2.000000", "tare"}));
+  EXPECT_EQ(asked, (std::vector<std::string>{"set force_gain 1.2345678901", "tare"}));
 }
 
 }  // namespace run_view_test

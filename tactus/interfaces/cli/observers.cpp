@@ -68,8 +68,8 @@ Result<Observers> Observers::open(const ObserverOptions& options, const experime
   if (options.requests && (!options.any() || exchange == nullptr)) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = {},
-                 .message = options.any() ? "nobody commands this run: requests need --device or --site"
-                                          : "nobody could ask: add --live or --ros2",
+                 .message = options.any() ? "no operator controls this run: requests need --device or --site"
+                                          : "requests come from a page or a ROS 2 node: add --live or --ros2",
                  .place = "--requests"};
   }
   const auto ask_as = [exchange, role = site.value_or(control::SiteRole::master)](runtime::RequestSource source) {

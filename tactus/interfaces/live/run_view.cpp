@@ -39,7 +39,7 @@ std::vector<Status> RunView::set_parameters(const std::vector<Parameter>& wanted
     if (parameter.name != gain_name || number == nullptr) {
       answers.push_back({StatusLevel::error, "a run has one parameter to set: force_gain, a number"});
     } else {
-      answers.push_back(answer("set force_gain " + std::to_string(*number)));
+      answers.push_back(answer("set force_gain " + format_number(*number)));
     }
   }
   return answers;

@@ -37,21 +37,23 @@ bool takes(SiteWord word, control::SiteRole role, RequestSource source) {
 Result<double> parse_force_gain(std::string_view rest, const Settable& settable) {
   const std::string usage = "write for instance: set force_gain " +
                             (settable.most_force_gain ? rounded_number(*settable.most_force_gain) : "1");
-  if (const std::string_view key = take_word(rest); key != "force_gain") {
+  const std::string_view key = take_word(rest);
+  if (key.empty()) return refused(ErrorCode::syntax, "", "set needs a key and a number: " + usage);
+  if (key != "force_gain") {
     return refused(ErrorCode::syntax, "",
                    "'" + report::printable(key.substr(0, 40)) + "' cannot be set while a site runs: " + usage);
   }
-  const std::string_view number = take_word(rest);
+  const std::string_view written = rest, number = take_word(rest);
   double gain = 0.0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), gain);
   if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(gain) || !rest.empty()) {
     return refused(ErrorCode::syntax, "force_gain",
-                   "'" + report::printable(number.substr(0, 40)) + "' is not one finite number: " + usage);
+                   "'" + report::printable(written.substr(0, 40)) + "' is not one finite number: " + usage);
   }
   if (!settable.most_force_gain) {
     return refused(ErrorCode::inconsistent, "force_gain",
-                   "cannot change while these sites run: their method has no force gain, its energy is counted with "
-                   "it, or this is not the leader's site");
+                   "cannot change while these sites run: their method has no force gain or counts energy by it, or "
+                   "this is not the leader's site");
   }
   if (gain >= 0.0 && gain <= *settable.most_force_gain) return gain;
   return refused(ErrorCode::out_of_bounds, "force_gain",
@@ -80,23 +82,20 @@ Result<SiteCommand> parse_site_command(std::string_view line, control::SiteRole 
     }
     if (first == name && rest.empty()) {
       if (word != SiteWord::tare || settable.tares) return SiteCommand(word, 0.0, source);
-      return refused(ErrorCode::inconsistent, "tare",
-                     "these sites cannot: it corrects the gravity compensation of two arms, kind arm-tapping");
+      return refused(
+          ErrorCode::inconsistent, "tare",
+          "it corrects the gravity compensation of two arms, and this experiment is not of the kind arm-tapping");
     }
     known += (known.empty() ? "" : ", ") + std::string(name);
   }
-  Error error = refused(
-      ErrorCode::syntax, "",
-      "'" +
-          report::printable(
-              line.substr(line.find_first_not_of(spaces) == line.npos ? line.size() : line.find_first_not_of(spaces))
-                  .substr(0, 40)) +
-          "' is no word for the " + name_of(role) + ": type one of " + known +
-          (master ? "" : "; the rest is typed at the master"));
+  line.remove_prefix(std::min(line.find_first_not_of(spaces), line.size()));
+  Error error = refused(ErrorCode::syntax, "",
+                        "'" + report::printable(line.substr(0, 40)) + "' is no word for the " + name_of(role) +
+                            ": type one of " + known + (master ? "" : "; the rest is typed at the master"));
   if (by_operator) {
     error.place = "standard input";
   } else {
-    error.message += "; the rest is the operator's at the console";
+    error.message += "; all others are typed at the console";
   }
   return error;
 }
