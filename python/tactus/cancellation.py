@@ -28,8 +28,8 @@ class Cancellation:
         intended_m = cancellation.step(encoder_m, -displayed_N)  # once per control cycle
 
     Args:
-        file: model of your device, as `tactus identify quick --out` writes it (`model.toml`). Without it: the leader of
-            the published paper.
+        file: model of your device, as `tactus identify quick --out` writes it (`model.toml`), with every
+            key of the tables of `control.model`. Without it: the leader of the published paper.
         sample_time_s: of your control loop, greater than 0.
         set: overrides by dotted key, {"control.model.motor.mass_kg": 0.02}.
         sections: overrides as sections of the file, control={"cancellation_friction": "at-rest"}.

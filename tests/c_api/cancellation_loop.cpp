@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/cancellation_file.hpp>
 #include <tactus/kernel/control/stages/cancellation.hpp>
 
 #include <cstdio>
@@ -14,10 +14,9 @@
 int main(int argc, char** argv) {
   using namespace tactus;
   if (argc != 5) return 2;
-  control::Cancellation::Params params;
-  const auto file = configuration::Document::load(argv[1]);
-  if (!file || file->read(bind(params.model.master, "control.model"))) return 1;
-  auto cancellation = control::Cancellation::make(params, Seconds{std::strtod(argv[2], nullptr)});
+  const auto params = configuration::read_cancellation(argv[1]);
+  if (!params) return 1;
+  auto cancellation = control::Cancellation::make(*params, Seconds{std::strtod(argv[2], nullptr)});
   if (!cancellation) return 1;
   std::ifstream in(argv[3], std::ios::binary);
   std::vector<control::Cancellation::Input> cycles;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/cancellation_file.hpp>
 #include <tactus/kernel/control/stages/cancellation.hpp>
 
 #include <array>
@@ -21,8 +21,28 @@ namespace {
 using CApiCancellation = CApi;
 
 constexpr double cycle_s = 200e-6;
-constexpr const char* model_text =
-    "[control.model.motor]\nmass_kg = 0.02\nfriction_N = 0.03\n[control.model.linkage]\nhysteretic_fraction = 0.4\n";
+constexpr const char* model_text = R"([control.model.motor]
+mass_kg = 0.02
+friction_N = 0.03
+[control.model.cable]
+stiffness_N_per_m = 39500.0
+damping_N_s_per_m = 3.6
+[control.model.drum]
+mass_kg = 0.01075
+friction_N = 0.0144
+[control.model.linkage]
+stiffness_N_per_m = 3950.0
+damping_N_s_per_m = 0.02
+hysteretic_fraction = 0.4
+slip_deflection_m = 6.5e-05
+reference_deflection_m = 0.00025
+[control.model.handle]
+mass_kg = 0.014
+[control.model.hand]
+stiffness_N_per_m = 40.0
+damping_N_s_per_m = 23.0
+quintic_stiffness_N_per_m5 = 3.125e13
+)";
 
 tactus_cancellation made_from(const std::string& file) {
   tactus_cancellation_options options = TACTUS_CANCELLATION_OPTIONS_INIT;
@@ -36,11 +56,9 @@ tactus_cancellation made_from(const std::string& file) {
 
 /// The loop of the README, from the same file.
 control::Cancellation loop_of_the_library(const std::string& file) {
-  control::Cancellation::Params params;
-  const auto document = configuration::Document::load(file);
-  EXPECT_TRUE(document.ok());
-  EXPECT_FALSE(document->read(bind(params.model.master, "control.model")));
-  return *control::Cancellation::make(params, Seconds{cycle_s});
+  const auto params = configuration::read_cancellation(file);
+  EXPECT_TRUE(params.ok());
+  return *control::Cancellation::make(*params, Seconds{cycle_s});
 }
 
 struct Cycles {
@@ -143,6 +161,18 @@ TEST_F(CApiCancellation, AStepAllocatesNothing) {
   static_cast<void>(tactus_cancellation_step(one + 1, 0.01, -0.5, &intended_m));
   EXPECT_EQ(laws::own_allocation_count(), before);
   EXPECT_EQ(tactus_cancellation_release(one), TACTUS_OK);
+}
+
+TEST_F(CApiCancellation, AModelFileThatLacksAKeyIsRefused) {
+  const std::string file = write("model.toml", "[control.model.motor]\nmass_kg = 0.02\n");
+  tactus_cancellation_options options = TACTUS_CANCELLATION_OPTIONS_INIT;
+  options.sample_time_s = cycle_s;
+  options.file = file.c_str();
+  tactus_cancellation made = 1;
+  tactus_error error = 0;
+  ASSERT_EQ(tactus_cancellation_make(&options, &made, &error), TACTUS_MISSING);
+  EXPECT_EQ(made, 0U);
+  EXPECT_EQ(take(error).parameter, "control.model.motor.friction_N");
 }
 
 TEST_F(CApiCancellation, AWrongValueIsRefusedWithPlaceValueBoundsAndRemedy) {

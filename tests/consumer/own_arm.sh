@@ -29,9 +29,9 @@ rm -f "$folder/hands"
 mkfifo "$folder/hands"
 exec 9<>"$folder/hands"
 
-# drive RIG NAME: armed at once, for eight seconds. A plug-in may be named after the command.
+# drive RIG NAME [SECONDS]: armed at once, for eight seconds or those given. A plug-in may be named after the command.
 drive() {
-  "$tactus" run "$joints" --realtime --device "$1" --plugin "$plugin" --arm --duration-s 8 \
+  "$tactus" run "$joints" --realtime --device "$1" --plugin "$plugin" --arm --duration-s "${3:-8}" \
     --out "$folder/$2" --overwrite >"$folder/$2.txt" 2>&1 <&9 || true
 }
 
@@ -41,12 +41,22 @@ drive "$folder/patient.toml" both
 grep -q 'leader active, follower active' "$folder/both.txt" || fail 'the arms were not coupled' "$folder/both.txt"
 [ -s "$folder/both/log/log.mcap" ] || fail 'there is no log' "$folder/both.txt"
 
-sed 's/^torque_limit_Nm = 5.0.*/&\nfails_after = 5000/' "$folder/patient.toml" >"$folder/throws.toml"
-drive "$folder/throws.toml" throws
+# A driver that throws is opened again, and `arm` couples the arms once more.
+sed 's/^torque_limit_Nm = 5.0.*/&\nfails_after = 4000/' "$folder/patient.toml" >"$folder/throws.toml"
+(
+  for _ in $(seq 60); do
+    sleep 0.2
+    if grep -q 'leader hold, follower hold (device)' "$folder/throws.txt" 2>/dev/null; then break; fi
+  done
+  sleep 1.5
+  echo arm >&9
+) &
+drive "$folder/throws.toml" throws 12
+wait
 grep -q 'the driver threw in exchange: the robot reported a collision' "$folder/throws.txt" ||
   fail 'the reason of a driver that threw is not printed' "$folder/throws.txt"
-grep -q 'leader fault, follower fault (gate), most torque 0.00.*its driver has ended' "$folder/throws.txt" ||
-  fail 'a driver that threw did not end the force of both arms' "$folder/throws.txt"
+sed -n '/leader hold, follower hold (device)/,$p' "$folder/throws.txt" | grep -q 'leader active, follower active' ||
+  fail 'a driver that threw did not end in hold, or the arms could not be armed again' "$folder/throws.txt"
 
 sed 's/^torque_limit_Nm = 5.0.*/&\nblocks_after = 6000/' "$rig" >"$folder/blocks.toml"
 drive "$folder/blocks.toml" blocks

@@ -42,7 +42,7 @@ class BusThread final : public MotorLink {
   Check wait_until_asked(Seconds longest) override;
   [[nodiscard]] MotorSheet sheet(std::size_t motor) const override { return bus_->sheet(motor); }
   [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override;
-  [[nodiscard]] Check problem() const override { return failed_; }
+  [[nodiscard]] Check problem() const override { return running() ? Check() : failed_; }
 
  private:
   class Exchange;

@@ -79,6 +79,7 @@ DeviceTrouble MotorBusDevice::found() noexcept {
   };
   if (!bus_->running()) return with(Trouble::bus_ended);
   if (last_.state == BusState::refused) return with(Trouble::bus_refused);
+  if (last_.state == BusState::asking) return with(Trouble::not_responding);  // it failed, and is opened again
   if (last_.guard == GuardState::gone) return with(Trouble::guard_gone);
   if (last_.guard == GuardState::acted) return with(Trouble::guard_acted);
   bool silent = found.age_s > params_.silence_s;

@@ -82,7 +82,7 @@ class MotorLink {
   /// Once it was commanded to stop: the motors that may still have power, or that did not switch off when they were
   /// commanded to. Empty where the motors were never found to be what was stated: then none was given power.
   [[nodiscard]] virtual std::vector<PoweredMotor> powered_motors() const = 0;
-  /// Once it is not running: why it ended by itself.
+  /// Why it ended by itself, or why its motors cannot be driven at present. Any thread.
   [[nodiscard]] virtual Check problem() const { return std::nullopt; }
 
  protected:
@@ -113,6 +113,8 @@ class CommandWatch {
     }
     return !silenced_;
   }
+  /// Commands do not count until a cycle enables nothing. Real-time safe.
+  void distrust() noexcept { silenced_ = true; }
 
  private:
   std::int64_t silence_ns_;

@@ -1,50 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/cancellation_file.hpp>
 #include <tactus/interfaces/c_api/internal/errors.hpp>
 #include <tactus/interfaces/c_api/internal/handles.hpp>
 #include <tactus/kernel/control/stages/cancellation.hpp>
 
 #include <cmath>
 #include <string>
-#include <string_view>
 
 namespace tactus::c_api {
 
 namespace {
 
 using control::Cancellation;
-
-/// The keys of an experiment file that concern a cancellation alone.
-struct CancellationFile {
-  struct Control {
-    control::MasterModel model;
-    control::ModelFidelity cancellation_model = control::ModelFidelity::sixth_order;
-    control::CancellationStep cancellation_step = control::CancellationStep::exact;
-    control::ModelFriction cancellation_friction = control::ModelFriction::total_velocity;
-    static constexpr auto fields() {
-      return List{
-          field("model", &Control::model, "The controller's model of master and hand."),
-          field("cancellation_model", &Control::cancellation_model,
-                "How much detail of master and hand the model of cancellation has."),
-          field("cancellation_step", &Control::cancellation_step, "Integration method of the model of cancellation."),
-          field("cancellation_friction", &Control::cancellation_friction,
-                "Velocity from which the sixth-order model computes its Coulomb friction: induced motion only "
-                "(at-rest), or with the intended motion (total-velocity).")};
-    }
-  };
-  Control control;
-  static constexpr auto fields() { return List{field("control", &CancellationFile::control, "The controllers.")}; }
-};
-
-/// The key of the file that a parameter of `Cancellation::Params` is.
-std::string key_in_file(std::string_view parameter) {
-  if (parameter == "model.fidelity") return "control.cancellation_model";
-  if (parameter == "model.step") return "control.cancellation_step";
-  if (parameter == "model.friction") return "control.cancellation_friction";
-  constexpr std::string_view master = "model.master";
-  if (parameter.starts_with(master)) return "control.model" + std::string(parameter.substr(master.size()));
-  return std::string(parameter);
-}
 
 Result<Cancellation> make_cancellation(const tactus_cancellation_options& options) {
   using configuration::Document;
@@ -53,20 +20,17 @@ Result<Cancellation> make_cancellation(const tactus_cancellation_options& option
   for (std::size_t i = 0; i < options.set_count; ++i) {
     if (auto error = document->set(options.set[i])) return *std::move(error);
   }
-  const auto file = document->read<CancellationFile>();
-  if (!file) return file.error();
-  const Cancellation::Params params{.model = {.master = file->control.model,
-                                              .fidelity = file->control.cancellation_model,
-                                              .step = file->control.cancellation_step,
-                                              .friction = file->control.cancellation_friction}};
+  const auto params = configuration::read_cancellation(*document);
+  if (!params) return params.error();
+  if (options.file != nullptr) {
+    if (auto missing = configuration::check_model_is_complete(*document)) return *std::move(missing);
+  }
   if (!(options.sample_time_s > 0.0 && options.sample_time_s <= 1.0)) {
     return out_of_bounds("sample_time_s", options.sample_time_s, positive_up_to(1.0), units::second);
   }
-  auto made = Cancellation::make(params, Seconds{options.sample_time_s});
-  if (made) return made;
-  Error error = made.error();
-  error.parameter = key_in_file(error.parameter);
-  return document->locate(error);
+  auto made = Cancellation::make(*params, Seconds{options.sample_time_s});
+  if (!made) return configuration::locate_cancellation(*document, made.error());
+  return made;
 }
 
 /// Another number would stay in the model until it is reset.

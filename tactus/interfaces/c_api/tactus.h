@@ -102,8 +102,9 @@ typedef struct tactus_cancellation_options {
 #define TACTUS_CANCELLATION_OPTIONS_INIT { sizeof(tactus_cancellation_options), 0.0, 0, 0, 0 }
 
 /* Reads and checks the model, and starts at rest. The file may have the keys `control.model`, `control.cancellation_model`,
- * `control.cancellation_step` and `control.cancellation_friction` of an experiment file. Any thread; allocates.
- * Errors: those of the file and its values; TACTUS_BAD_ARGUMENT. `*made` is 0 after an error. */
+ * `control.cancellation_step` and `control.cancellation_friction` of an experiment file. With its overrides it must have every
+ * key of the tables `control.model.motor`, `cable`, `drum`, `linkage`, `handle` and `hand`. Any thread; allocates.
+ * Errors: those of the file and its values; TACTUS_MISSING for a key that it lacks; TACTUS_BAD_ARGUMENT. `*made` is 0 after an error. */
 TACTUS_API tactus_status tactus_cancellation_make(const tactus_cancellation_options* options, tactus_cancellation* made,
                                                   tactus_error* error);
 /* One control cycle: the position that the operator meant, from the one measured now; then the model advances under

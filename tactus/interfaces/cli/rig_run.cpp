@@ -99,7 +99,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     take_seconds();
     for (auto& side : around.driven) {
       if (side && side->guard) side->guard->look();
-      if (side) tell_why_ended(*side, say);
+      if (side) report_problem(*side, say);
     }
     usleep(between_looks_us);
   }

@@ -221,11 +221,11 @@ void RigSession::State::take_newest() {
   }
 }
 
-/// Why a driver ended by itself.
+/// Why drivers ended by themselves, or cannot drive their motors at present.
 std::string RigSession::State::problems() const {
   std::string text;
   for (std::size_t side = 0; side < sides.size(); ++side) {
-    if (!driven[side] || !driven[side]->link || driven[side]->link->running()) continue;
+    if (!driven[side] || !driven[side]->link) continue;
     if (const Check problem = driven[side]->link->problem()) {
       text += (text.empty() ? "" : "; ") + sides[side]->path + ": " + describe(*problem);
     }

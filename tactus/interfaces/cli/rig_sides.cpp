@@ -6,6 +6,7 @@
 #include <tactus/interfaces/cli/run_log.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::cli {
 
@@ -108,11 +109,9 @@ Result<DrivenSide> drive(const Rig& rig, const RigSide& side, bool emulated) {
   return driven;
 }
 
-void tell_why_ended(DrivenSide& driven, const SayLine& say) {
-  if (driven.told || driven.link->running()) return;
+void report_problem(DrivenSide& driven, const SayLine& say) {
   const Check problem = driven.link->problem();
-  if (!problem) return;
-  driven.told = true;
+  if (std::exchange(driven.problem_reported, problem.has_value()) || !problem) return;
   say("tactus: " + driven.side + ": " + describe(*problem) + "\n");
 }
 
@@ -124,7 +123,7 @@ Check switch_off(std::array<std::optional<DrivenSide>, 2>& driven, const std::ve
     const RigSide& side = *sides[i];
     driven[i]->device.reset();
     driven[i]->link->stop();
-    tell_why_ended(*driven[i], say);
+    report_problem(*driven[i], say);
     for (const devices::PoweredMotor& one : driven[i]->link->powered_motors()) {
       all_off = false;
       say("tactus: " + describe_powered(side, one) + "\n");

@@ -44,7 +44,7 @@ Check refuse_unclean(const devices::Rig& rig, const std::vector<const devices::R
 /// A side that is driven. The guard ends after the port is closed.
 struct DrivenSide {
   std::string side;
-  bool told = false;  ///< why its link ended by itself
+  bool problem_reported = false;  ///< the one that its link has
   std::optional<RigGuard> guard;
   std::unique_ptr<devices::MotorLink> link;
   std::unique_ptr<devices::MotorBusDevice> device;
@@ -54,8 +54,8 @@ struct DrivenSide {
 /// unless they are emulated, so that they end with this program.
 Result<DrivenSide> drive(const devices::Rig& rig, const devices::RigSide& side, bool emulated);
 
-/// Reports once why a link has ended.
-void tell_why_ended(DrivenSide& driven, const SayLine& say);
+/// Reports once why a link ended, or why it cannot drive its motors at present.
+void report_problem(DrivenSide& driven, const SayLine& say);
 
 /// Takes the power from all motors and ends their links. Errors: `failed` where a motor did not report in time that it
 /// is off; each of these is reported to `say`.

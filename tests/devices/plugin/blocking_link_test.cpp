@@ -178,7 +178,7 @@ TEST(BlockingLink, ADriverThatBlocksMakesTheDeviceSilent) {
   seen->blocks = false;
 }
 
-TEST(BlockingLink, ADriverThatFailsMakesTheDeviceLost) {
+TEST(BlockingLink, ADriverThatFailsMakesTheDeviceSilentUntilItIsOpenedAgain) {
   const auto seen = std::make_shared<Seen>();
   std::atomic<bool> fails{false};
   auto link = *BlockingLink::start(
@@ -187,9 +187,39 @@ TEST(BlockingLink, ADriverThatFailsMakesTheDeviceLost) {
   ASSERT_FALSE(link->wait_until_asked(patient));
   const auto device = device_on(*link);
   ASSERT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::good; }));
+  link->command(torque(1.0));
+  ASSERT_TRUE(becomes([&] { return seen->enabled == 1; }));
   fails = true;
-  EXPECT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::lost; }));
-  EXPECT_EQ(seen->closed, 1);
+  ASSERT_TRUE(becomes([&] { return seen->closed > 0; }));
+  EXPECT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::not_responding; }));
+  ASSERT_TRUE(becomes([&] { return link->problem().has_value(); }));
+  EXPECT_EQ(link->problem()->message, "cable");
+  EXPECT_TRUE(link->running());
+  fails = false;
+  ASSERT_TRUE(becomes([&] { return !link->problem() && link->newest()->state == BusState::ready; }));
+  EXPECT_EQ(seen->opened, seen->closed + 1);
+  // Its commands are those from before: they count again once a cycle enables nothing.
+  const int cycles = seen->cycles;
+  ASSERT_TRUE(becomes([&] { return seen->cycles > cycles + 3; }));
+  EXPECT_EQ(seen->enabled, 0);
+  link->command(BusCommands{.motors = {}, .time_ns = wire::monotonic_ns()});
+  ASSERT_TRUE(becomes([&] { return link->newest()->unheard == 0; }));
+  link->command(torque(1.0));
+  EXPECT_TRUE(becomes([&] { return seen->enabled == 1; }));
+}
+
+TEST(BlockingLink, ADriverThatCannotBeOpenedAgainEndsWhenItIsStopped) {
+  const auto seen = std::make_shared<Seen>();
+  auto link = *BlockingLink::start(
+      std::make_unique<Driver>(seen, [](int cycle) { return cycle > 3 ? Check(failure("cable")) : Check{}; }),
+      longest_silence_s);
+  ASSERT_FALSE(link->wait_until_asked(patient));
+  ASSERT_TRUE(becomes([&] { return seen->closed > 1; }));
+  link->stop();
+  EXPECT_FALSE(link->running());
+  EXPECT_EQ(seen->opened, seen->closed);
+  EXPECT_TRUE(link->powered_motors().empty());
+  EXPECT_EQ(link->problem()->message, "cable");
 }
 
 TEST(BlockingLink, ADriverThatStaysBlockedDoesNotKeepTheProgramFromEnding) {

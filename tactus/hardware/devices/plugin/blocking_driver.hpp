@@ -28,8 +28,9 @@ struct MotorAbility {
 /// commands, and stops the motors when commands stop or a reading is too old.
 ///
 /// All functions but `motors`, `cycle_s` and `ability` are called on that thread, one after another. They may block,
-/// allocate and throw. A call that throws, or returns an error, ends the link: `close` is called, and both sites hold
-/// with the reason.
+/// allocate and throw. If the first `open` or the first `exchange` throws or returns an error, the run does not start.
+/// If a later `exchange` does, `close` is called, both sites hold with the reason, and `open` is called again every
+/// second until it succeeds. The operator can then arm the sites again.
 ///
 /// **The device must remove its torque by itself when `exchange` is no longer called**, within `watchdog_s` of the rig
 /// file: the program may be killed at any time. Controllers of robots do; if yours does not, do not drive it.
@@ -52,9 +53,9 @@ class BlockingDriver {
   /// One cycle: sends a command to every motor and stores what it reports. Position (rad), velocity (rad/s), torque
   /// (N m), temperature, fault and `enabled` of `readings` are yours; the time stamps are set by the caller. Both
   /// are in the motor's own sense: a positive torque must move a free motor up (`MotorJoint` has the sign rule). A
-  /// motor whose command is not `enabled` must have no torque. Errors: what ends the link.
+  /// motor whose command is not `enabled` must have no torque. Errors: why the device cannot be driven at present.
   virtual Check exchange(std::span<const MotorCommand> commands, std::span<MotorReading> readings) = 0;
-  /// Removes all torque and disconnects. Called once after `open`, whether or not that succeeded.
+  /// Removes all torque and disconnects. Called once after each `open`, whether or not that succeeded.
   virtual void close() noexcept = 0;
 };
 

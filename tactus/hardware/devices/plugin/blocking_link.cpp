@@ -26,6 +26,8 @@ namespace {
 constexpr int driver_priority = 70;
 constexpr int any_core_of_driver = -1;
 constexpr std::chrono::seconds longest_stop{2};
+/// From the failure of a driver until it is opened again. A run looks for the reason far more often.
+constexpr std::chrono::seconds before_reopening{1};
 
 Error driver_failed(std::string message) {
   return {.code = ErrorCode::failed, .parameter = {}, .message = std::move(message), .place = {}};
@@ -63,26 +65,31 @@ class BlockingLink::Shared {
     } catch (const std::bad_alloc&) {
       // Nothing to write down what was granted; the driver runs all the same.
     }
-    Check error = guarded("open", [this] { return driver_->open(); });
+    Check error = open();
     told_.state = error ? BusState::refused : BusState::ready;
     publish();
-    while (!error && !stopping_.load(std::memory_order_relaxed)) error = cycle(true);
+    if (!error) error = cycle(true);
+    while (!error && !is_stopping()) {
+      error = cycle(true);
+      if (error) error = reopen(*std::move(error));
+    }
     const std::int64_t until_ns = wire::monotonic_ns() + farewell_ns;
     while (!error && has_power_left() && wire::monotonic_ns() < until_ns) error = cycle(false);
-    driver_->close();
+    close();
     {
       const std::scoped_lock lock(mutex_);
       failed_ = std::move(error);
       running_.store(false, std::memory_order_release);
     }
-    ended_.notify_all();
+    changed_.notify_all();
   }
 
   /// Whether the thread ended in time.
   bool stop() {
-    stopping_.store(true, std::memory_order_relaxed);
     std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, longest_stop, [this] { return !running(); });
+    stopping_.store(true, std::memory_order_relaxed);
+    changed_.notify_all();
+    return changed_.wait_for(lock, longest_stop, [this] { return !running(); });
   }
 
   void command(const BusCommands& commands) noexcept { commands_.publish(commands); }
@@ -96,6 +103,44 @@ class BlockingLink::Shared {
   }
 
  private:
+  [[nodiscard]] bool is_stopping() const noexcept { return stopping_.load(std::memory_order_relaxed); }
+
+  Check open() {
+    open_ = true;
+    return guarded("open", [this] { return driver_->open(); });
+  }
+
+  void close() noexcept {
+    if (std::exchange(open_, false)) driver_->close();
+  }
+
+  /// Closes a driver that failed, and opens it again until that succeeds or the link stops. Its commands count again
+  /// once a cycle enables nothing. Returns the last failure if the link stops.
+  Check reopen(Error error) {
+    while (true) {
+      close();
+      told_.state = BusState::asking;
+      for (MotorReading& motor : told_.motors) {
+        motor.enabled = 0;
+        motor.off = 1;
+      }
+      publish();
+      {
+        std::unique_lock lock(mutex_);
+        failed_ = error;
+        if (changed_.wait_for(lock, before_reopening, [this] { return is_stopping(); })) return error;
+      }
+      Check again = open();
+      if (!again) break;
+      error = *std::move(again);
+    }
+    watch_.distrust();
+    told_.state = BusState::ready;
+    const std::scoped_lock lock(mutex_);
+    failed_.reset();
+    return std::nullopt;
+  }
+
   Check cycle(bool with_torque) noexcept {
     const std::int64_t start_ns = wire::monotonic_ns();
     if (const auto newest = commands_.newest()) wanted_ = *newest;
@@ -148,8 +193,9 @@ class BlockingLink::Shared {
   runtime::SharedSlots<BusReadings, 8> readings_{};
   runtime::SharedSlots<BusCommands, 8> commands_{};
   std::atomic<bool> stopping_{false}, running_{true};
-  mutable std::mutex mutex_;  ///< of `failed_`, and of the end
-  std::condition_variable ended_;
+  bool open_ = false;
+  mutable std::mutex mutex_;  ///< of `failed_`, of the request to stop and of the end
+  std::condition_variable changed_;
   Check failed_;
 };
 
