@@ -23,8 +23,8 @@ struct HandImpedance {
                 field("damping_N_s_per_m", &H::damping_N_s_per_m, tactus::units::newton_second_per_metre,
                       between(0.0, 1e4), "Damping of the hand in each direction."),
                 field("lever_m", &H::lever_m, tactus::units::metre, between(0.0, 0.5),
-                      "Half of the breadth of the grip, which holds the orientation of the tool; 0: the tool turns "
-                      "freely in the hand.")};
+                      "Half of the breadth of the grip: lever arm with which the hand resists a rotation of the tool; "
+                      "0: the tool turns freely in the hand.")};
   }
 };
 

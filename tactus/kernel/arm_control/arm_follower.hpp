@@ -45,10 +45,11 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
         List{field("joints", &TorqueObserverParams::joints,
                    "The observer's model of the joints; with elastic joints its filter is of third order."),
              field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
-                   "Share of each joint's Coulomb friction that an external torque must exceed to be reported."),
+                   "Dead band of the estimate, as a share of each joint's Coulomb friction. A torque within it is "
+                   "reported as zero, and a larger one is reduced by it."),
              field("bias_distance_m", &TorqueObserverParams::bias_distance_m, tactus::units::metre, between(0.0, 10.0),
-                   "Free travel of the tool after which 63 % of a lasting external torque counts as bias; 0: no bias "
-                   "is estimated.")});
+                   "Distance that the tool moves freely until 63 % of a lasting estimate counts as bias, which is "
+                   "subtracted; 0: no bias is estimated.")});
   }
 };
 
@@ -75,14 +76,15 @@ class ArmFollower {
       using P = Params;
       return List{
           field("coupling", &P::coupling,
-                "Quantity that the leader commands. joints: each joint commands that of the same number. tool: a "
-                "leader of three joints that slide commands the position of the follower's tool."),
+                "How the leader commands the follower. joints: each joint of the leader commands the follower's joint "
+                "of the same number. tool: a leader with three sliding joints commands the position of the follower's "
+                "tool."),
           field("tool_scale", &P::tool_scale, tactus::units::none, between(0.01, 100.0),
-                "Only with the coupling tool: metres of the follower's tool for one metre of the leader's handle, and "
-                "newtons at the handle for one newton at the tool at a force_gain of 1."),
+                "Only with the coupling tool: displacement of the follower's tool divided by the displacement of the "
+                "leader's handle. The displayed force is multiplied by the same factor, in addition to force_gain."),
           field("gains", &P::gains, "Gains of the drives."),
           field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
-                "Factor on every stiffness in gains; the damping in gains stays as it is."),
+                "Factor on every stiffness in gains. The damping in gains is not scaled."),
           field("tool_stiffness_limit_N_per_m", &P::tool_stiffness_limit_N_per_m, tactus::units::newton_per_metre,
                 between(0.0, 1e5),
                 "Largest stiffness at the tool, in any direction, that the drives may cause; 0: no limit."),
@@ -91,7 +93,7 @@ class ArmFollower {
                 "Largest damping at the tool, in any direction, that the drives may cause; 0: no limit."),
           field("feed_forward", &P::feed_forward, "Feed-forward torques of the follower, for gravity and friction."),
           field("wanted_motion", &P::wanted_motion,
-                "Feed-forward of the leader's motion in free motion, in addition to the drives."),
+                "Feed-forward torque of the motion that the leader commands, only while the follower moves freely."),
           field("torque", &P::torque, "Source of the external torque that is displayed."),
           field("observer", &P::observer, "The observer of external torque.")};
     }

@@ -42,7 +42,7 @@ struct JointCutoff {
   double cutoff_Hz = 0.0;
   static constexpr auto fields() {
     return List{field("cutoff_Hz", &JointCutoff::cutoff_Hz, units::hertz, between(0.0, 1000.0),
-                      "Corner frequency of this joint; 0: the common one.")};
+                      "Corner frequency for this joint; 0: the frequency that is set for all joints.")};
   }
 };
 

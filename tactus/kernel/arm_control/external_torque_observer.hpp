@@ -31,7 +31,7 @@ class ExternalTorqueObserver {
     static constexpr auto fields() {
       return List{field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive_up_to(1000.0),
                         "-3 dB frequency of the estimate of external torque, if the velocity is exact."),
-                  field("cutoff_each", &Params::cutoff_each, "Separate corner frequencies of single joints.")};
+                  field("cutoff_each", &Params::cutoff_each, "Separate corner frequencies for single joints.")};
     }
   };
 

@@ -44,20 +44,22 @@ class FactrLaw {
           field("damping_N_m_s_per_rad", &P::damping_N_m_s_per_rad, u::newton_metre_second_per_radian,
                 between(0.0, 50.0), "Damping of each joint, computed by the site and commanded over the bus."),
           field("dither_share", &P::dither_share, tactus::units::none, between(0.0, 1.0),
-                "Torque against static friction divided by the torque of gravity compensation."),
+                "Amplitude of the dither torque against static friction, as a share of the joint's gravity and "
+                "Coriolis torque."),
           field("dither_below_rad_per_s", &P::dither_below_rad_per_s, u::radian_per_second, between(0.0, 10.0),
                 "Speed of a joint above which it is not dithered."),
           field("null_space_stiffness_N_m_per_rad", &P::null_space_stiffness_N_m_per_rad, stiffness,
                 between(0.0, 100.0),
                 "Stiffness toward the initial pose, in the joint motions that do not move the tool."),
           field("null_space_damping_N_m_s_per_rad", &P::null_space_damping_N_m_s_per_rad,
-                u::newton_metre_second_per_radian, between(0.0, 50.0), "Damping in parallel with this stiffness."),
+                u::newton_metre_second_per_radian, between(0.0, 50.0),
+                "Damping in parallel with null_space_stiffness_N_m_per_rad."),
           field("limit_stiffness_N_m_per_rad", &P::limit_stiffness_N_m_per_rad, stiffness, between(0.0, 1000.0),
                 "Stiffness of the spring that pushes a joint back from its limits."),
           field("limit_damping_N_m_s_per_rad", &P::limit_damping_N_m_s_per_rad, u::newton_metre_second_per_radian,
-                between(0.0, 50.0), "Damping in parallel with this stiffness."),
+                between(0.0, 50.0), "Damping in parallel with limit_stiffness_N_m_per_rad."),
           field("limit_margin_rad", &P::limit_margin_rad, u::radian, between(0.0, 3.0),
-                "Distance from a limit at which this spring begins.")};
+                "Distance from a joint limit at which this spring starts to act.")};
     }
   };
 

@@ -29,7 +29,7 @@ class FeedForward {
           field("friction_share", &Params::friction_share, units::none, between(0.0, 1.0),
                 "Share of the joints' friction that the motors compensate."),
           field("friction_velocity_rad_per_s", &Params::friction_velocity_rad_per_s, arm::units::radian_per_second,
-                positive_up_to(10.0), "Velocity within which the torque against Coulomb friction changes its sign.")};
+                positive_up_to(10.0), "Velocity v1 in the compensation of Coulomb friction, friction * tanh(v / v1).")};
     }
   };
 

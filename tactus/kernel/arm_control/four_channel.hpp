@@ -27,7 +27,7 @@ struct FourChannelJoint {
                 field("force_share", &J::force_share, tactus::units::none, between(0.0, 10.0),
                       "Kf: gain on the sum of both sides' torques."),
                 field("disturbance_limit_N_m", &J::disturbance_limit_N_m, u::newton_metre, between(0.0, 100.0),
-                      "Largest torque that is commanded against a disturbance.")};
+                      "Largest torque that compensates a disturbance.")};
   }
 };
 

@@ -55,7 +55,7 @@ class InducedMotion {
           field("hand", &Params::hand, "The hand on the tool, as the model assumes it."),
           field("washout_Hz", &Params::washout_Hz, tactus::units::hertz, between(0.0, 50.0),
                 "Corner frequency below which induced motion is not cancelled; 0: slow motion is cancelled too."),
-          field("inertia", &Params::inertia, "The full mass matrix, or its diagonal alone."),
+          field("inertia", &Params::inertia, "Mass matrix of the model: full, or only its diagonal."),
           field("joints", &Params::joints, "Model of the joints.")};
     }
   };

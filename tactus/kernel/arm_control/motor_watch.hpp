@@ -40,9 +40,10 @@ constexpr auto enumerators(MotorFinding) {
 /// (a generalised likelihood ratio: A. S. Willsky, Automatica 12, 1976). s_i adds the joint's Coulomb friction,
 /// `model_share` of its gravity torque and of the torque that accelerates it, and `least_N_m`.
 ///
-/// A joint is at fault once either difference has exceeded its bound for `lasting_s`; one that is twice the bound
-/// counts twice as fast. No motor is judged before gravity compensation is complete: until both differences have stayed
-/// below half of their bounds for `settles_s` under power, a table or a hand may support the arm.
+/// For either difference the excess over its bound, as a share of the bound and 3 at most, is integrated over time and
+/// never below 0. A joint is at fault once the integral exceeds `lasting_s`. No motor is judged before gravity
+/// compensation is complete: until both differences have stayed below half of their bounds for `settles_s` under power,
+/// a table or a hand may support the arm.
 ///
 /// Range: rigid joints, or elastic ones whose swing stays within `model_share`. A contact elsewhere than at the tool is
 /// not explained by w, and may look like a wrong motor.
@@ -61,8 +62,8 @@ class MotorWatch {
       using P = Params;
       return List{
           field("deviations", &P::deviations, tactus::units::none, between(0.0, 100.0),
-                "Difference between the reported torque and the torque seen in the motion, in standard deviations, "
-                "above which the motor is at fault; 0 switches the check off."),
+                "Bound of the difference between the torque that the drive reports and the torque that is estimated "
+                "from the motion, in standard deviations. 0 switches motor_watch off."),
           field("contact_force_N", &P::contact_force_N, tactus::units::newton, positive_up_to(1000.0),
                 "Standard deviation of the contact force at the tool, in each direction."),
           field("contact_moment_N_m", &P::contact_moment_N_m, arm::units::newton_metre, positive_up_to(100.0),
@@ -75,9 +76,10 @@ class MotorWatch {
           field("report_share", &P::report_share, tactus::units::none, positive_up_to(1.0),
                 "Share of a joint's torque limit by which commanded and reported torque may differ."),
           field("lasting_s", &P::lasting_s, tactus::units::second, positive_up_to(1.0),
-                "Time after which a difference of twice its bound is a fault."),
+                "Time after which a difference of twice its bound is a fault. One of 1.5 times its bound takes twice "
+                "as long, one of three times its bound half as long."),
           field("cutoff_Hz", &P::cutoff_Hz, tactus::units::hertz, positive_up_to(1000.0),
-                "-3 dB frequency of the torque seen in the motion.")};
+                "-3 dB frequency of the low-pass on the torque that is estimated from the motion.")};
     }
   };
   struct Input {

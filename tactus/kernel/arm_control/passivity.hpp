@@ -26,8 +26,8 @@ struct PassivityLimit {
   static constexpr auto fields() {
     return List{field("damping_N_m_s_per_rad", &PassivityLimit::damping_N_m_s_per_rad,
                       arm::units::newton_metre_second_per_radian, between(0.0, 50.0),
-                      "Largest damping of the joint. If passivity needs more, the leader only cancels a torque that "
-                      "drives the hand.")};
+                      "Largest damping of the joint. The damping torque may be larger only as far as it cancels a "
+                      "displayed torque in the direction of motion.")};
   }
 };
 
@@ -41,13 +41,13 @@ struct PassivityParams {
     using P = PassivityParams;
     return List{
         field("port", &P::port,
-              "Port at which energy must not leave the link before it has entered. joints: each joint separately. "
-              "tool: all joints together, by the power at the tool."),
+              "Port at which the energy that leaves the link must not exceed the energy that has entered it. joints: "
+              "each joint separately. tool: all joints together, by the power at the tool."),
         field("joint_limits", &P::joint_limits, "Only with the port joints: the limits of each joint."),
         field("tool_limit_N_s_per_m", &P::tool_limit_N_s_per_m, tactus::units::newton_second_per_metre,
               between(0.0, 1000.0),
-              "Only with the port tool: largest damping at the leader's tool. If passivity needs more, the leader only "
-              "cancels a torque that drives the hand."),
+              "Only with the port tool: largest damping at the leader's tool. The damping force may be larger only as "
+              "far as it cancels a displayed force in the direction of motion."),
         field(
             "recovery_time_s", &P::recovery_time_s, tactus::units::second, between(0.002, 10.0),
             "Time constant with which the follower corrects the position error that its passivity controller causes.")};

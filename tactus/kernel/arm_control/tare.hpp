@@ -36,7 +36,7 @@ class Tare {
       return List{field("cycles", &Params::cycles, between(0, 20),
                         "Cycles of motion that are averaged, after one in which the motion ramps in; 0: no tare."),
                   field("amplitude_rad", &Params::amplitude_rad, arm::units::radian, positive_up_to(0.1),
-                        "Amplitude of the motion of each joint; in m if it slides."),
+                        "Amplitude of the motion of each joint; in m for a sliding joint."),
                   field("frequency_Hz", &Params::frequency_Hz, tactus::units::hertz, between(0.1, 5.0),
                         "Frequency of this motion."),
                   field("most_share", &Params::most_share, tactus::units::none, positive_up_to(1.0),

@@ -42,16 +42,18 @@ class EncoderCheck {
     double unbalanced_force_N = 200.0;
     double frozen_after_s = 0.01;
     static constexpr auto fields() {
-      return List{field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                        "Fastest possible motion; a larger difference between two readings is a jump."),
-                  field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),
-                        "Lasting change of the motor's force that must change the encoder's reading by a count; "
-                        "otherwise the encoder is frozen."),
-                  field("unbalanced_force_N", &Params::unbalanced_force_N, units::newton, positive_up_to(200.0),
-                        "Lasting difference between the forces of motor and tip, or of motor and hand, that must "
-                        "change the reading by a count; only with a force sensor."),
-                  field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
-                        "Time within which the reading must change.")};
+      return List{
+          field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
+                "Fastest possible motion. A difference between two readings that needs a faster motion is a jump."),
+          field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),
+                "If the motor's force stays at least this far from its value at the last count for frozen_after_s, and "
+                "the encoder's reading does not change, the encoder is frozen."),
+          field("unbalanced_force_N", &Params::unbalanced_force_N, units::newton, positive_up_to(200.0),
+                "Only with a force sensor. If the motor's force and the sensor's force differ by at least this much "
+                "for frozen_after_s and the reading does not change, the encoder is frozen."),
+          field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
+                "Time for which the reading must stay unchanged, with frozen_force_N or unbalanced_force_N exceeded, "
+                "before the encoder counts as frozen.")};
     }
   };
   struct Input {

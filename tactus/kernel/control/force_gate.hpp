@@ -49,7 +49,7 @@ constexpr auto enumerators(ActiveLimit) {
 /// The longest time that a force may take to fall to zero once it must.
 inline constexpr double longest_stop_s = 0.25;
 inline constexpr const char* stop_time_doc =
-    "Longest time in which the force falls to zero when the site stops, if the rate limit is slower.";
+    "Longest time for the force to fall to zero when the site stops. It applies if the rate limit would take longer.";
 
 /// The very last stage before an actuator: a finite force, within its limit, that changes no faster than its rate
 /// limit.

@@ -19,10 +19,11 @@ class GainChange {
     double limit = 0.0;
     double rate_per_s = 1.0;
     static constexpr auto fields() {
-      return List{field("limit", &Params::limit, units::none, between(0.0, 1000.0),
-                        "Largest force gain that an operator may set while the site runs; 0: that of the file."),
-                  field("rate_per_s", &Params::rate_per_s, units::per_second, positive_up_to(100.0),
-                        "How fast the force gain then changes.")};
+      return List{
+          field("limit", &Params::limit, units::none, between(0.0, 1000.0),
+                "Largest force gain that an operator may set while the site runs; 0: the force gain of the file."),
+          field("rate_per_s", &Params::rate_per_s, units::per_second, positive_up_to(100.0),
+                "Largest rate of change of the force gain after an operator sets it.")};
     }
   };
   struct Input {

@@ -34,15 +34,16 @@ class MessageFollower {
     static constexpr auto fields() {
       return List{
           field("extrapolation_s", &Params::extrapolation_s, units::second, between(0.0, 0.1),
-                "Time without packets during which the other site is assumed to continue as before."),
+                "Time without packets for which the received position is extrapolated at its last velocity and the "
+                "other received values stay constant."),
           field("decay_s", &Params::decay_s, units::second, positive_up_to(1.0),
                 "Time constant with which velocity, force and wave decay after extrapolation_s."),
           field("catch_up_m_per_s", &Params::catch_up_m_per_s, units::metre_per_second, positive_up_to(10.0),
                 "Largest speed, in addition to the received motion, at which the site's copy of the received position "
                 "catches up after a gap."),
           field("catch_up_N_per_s", &Params::catch_up_N_per_s, units::newton_per_second, positive_up_to(1e5),
-                "As catch_up_m_per_s, for a received force; also for a received velocity in m/s per s, and for a "
-                "received wave in square roots of watts per s.")};
+                "As catch_up_m_per_s, for a received force in N/s, a received velocity in m/s per s, and a received "
+                "wave in square roots of watts per s.")};
     }
   };
   struct Input {

@@ -51,7 +51,8 @@ class MotionCheck {
                 "Largest difference between the change of the measured position and the integral of the reported "
                 "velocity."),
           field("velocity_error_m_per_s", &Params::velocity_error_m_per_s, units::metre_per_second, positive_up_to(1.0),
-                "Tolerated lasting error of the reported velocity; at least velocity_step_m_per_s."),
+                "Tolerated constant error of the reported velocity. If velocity_step_m_per_s is larger, that value "
+                "applies."),
           field("lag_s", &Params::lag_s, units::second, positive_up_to(0.1),
                 "Delay with which the drive reports a change of its velocity."),
           field("velocity_step_m_per_s", &Params::velocity_step_m_per_s, units::metre_per_second, between(0.0, 10.0),

@@ -35,16 +35,17 @@ class PassivityMonitor {
     static constexpr auto fields() {
       return List{
           field("damp_above_J", &Params::damp_above_J, units::joule, positive_up_to(100.0),
-                "Delivered energy above which the motor is damped."),
+                "Delivered energy above which the gate adds damping."),
           field("hold_above_J", &Params::hold_above_J, units::joule, positive_up_to(200.0),
-                "Delivered energy above which the motor only damps until it is armed again; must be greater than "
-                "damp_above_J."),
+                "Delivered energy above which the motor acts as a damper only, until it is armed again. Must be "
+                "greater than damp_above_J."),
           field("credit_J", &Params::credit_J, units::joule, between(0.0, 100.0),
-                "Largest credit for energy that the motor has absorbed before."),
+                "Largest amount of absorbed energy that is credited against energy delivered later."),
           field("drain_W", &Params::drain_W, units::watt, between(0.0, 50.0),
                 "Power that the motor may deliver continuously."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, positive_up_to(1000.0),
-                "Damping at and above hold_above_J; it must be stable on the device at its servo rate.")};
+                "Damping at and above hold_above_J; from damp_above_J to there it increases from zero. Must be stable "
+                "on the device at its servo rate.")};
     }
   };
   struct Input {

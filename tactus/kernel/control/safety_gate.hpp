@@ -55,10 +55,11 @@ class SafetyGate {
                 "Largest rate of change of the force that reaches the motor."),
           field("velocity_limit_m_per_s", &Params::velocity_limit_m_per_s, units::metre_per_second,
                 positive_up_to(100.0),
-                "Speed above which no force may accelerate the motion; 1.25 times this speed is a fault."),
-          field(
-              "position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
-              "Distance from zero beyond which no force may increase the distance; 1.25 times this limit is a fault."),
+                "Speed above which the gate reduces a force in the direction of motion. At 1.25 times this speed the "
+                "gate reports a fault."),
+          field("position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
+                "Distance from zero above which the gate reduces a force that acts away from zero. At 1.25 times this "
+                "distance the gate reports a fault."),
           field("stop_time_s", &Params::stop_time_s, units::second, positive_up_to(longest_stop_s), stop_time_doc),
           field("encoder", &Params::encoder, "Check of the measured position."),
           field("motion", &Params::motion,

@@ -57,18 +57,19 @@ class SignProbe {
     double least_m = 1e-4;
     double most_m = 0.01;
     static constexpr auto fields() {
-      return List{
-          field("force_N", &Params::force_N, units::newton, between(0.0, 100.0),
-                "Peak of the force that tests a motor on arming; above the friction of the device. 0: no test."),
-          field("most_force_N", &Params::most_force_N, units::newton, between(0.0, 100.0),
-                "If the device does not move, the test is repeated with twice the force, up to this force and to the "
-                "gate's force limit; 0: one test only."),
-          field("duration_s", &Params::duration_s, units::second, positive_up_to(5.0),
-                "Duration of one test, both directions together."),
-          field("least_m", &Params::least_m, units::metre, positive_up_to(0.1),
-                "Distance that the device must move with the force, in each direction; several counts of its encoder."),
-          field("most_m", &Params::most_m, units::metre, positive_up_to(1.0),
-                "Distance beyond which the test ends at once; above least_m.")};
+      return List{field("force_N", &Params::force_N, units::newton, between(0.0, 100.0),
+                        "Peak force of the test of a motor on arming. Must be greater than the friction of the device. "
+                        "0: no test."),
+                  field("most_force_N", &Params::most_force_N, units::newton, between(0.0, 100.0),
+                        "Largest test force. If the device does not move, the test is repeated with twice the force, "
+                        "up to this value and the gate's force limit. 0: one test only."),
+                  field("duration_s", &Params::duration_s, units::second, positive_up_to(5.0),
+                        "Duration of one test, both directions together."),
+                  field("least_m", &Params::least_m, units::metre, positive_up_to(0.1),
+                        "Distance that the device must move with the force, in each direction. Must be several counts "
+                        "of its encoder."),
+                  field("most_m", &Params::most_m, units::metre, positive_up_to(1.0),
+                        "Distance beyond which the test ends at once. Must be greater than least_m.")};
     }
   };
   struct Input {

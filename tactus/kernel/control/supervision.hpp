@@ -57,22 +57,22 @@ struct SupervisionParams {
         field("watchdog", &SupervisionParams::watchdog, "Time without packets after which the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "Check of the force sensor at the tip."),
         field("hand_sensor", &SupervisionParams::hand_sensor,
-              "Check of the master's motor against the force sensor at the hand, for a master with such a sensor; "
-              "without one, leave the limit so large that it never applies."),
+              "Check of the master's motor against a force sensor at the hand. Without such a sensor, set a limit so "
+              "large that it never applies."),
         field("overload", &SupervisionParams::overload, "Limit of missed control cycles above which a site holds."),
         field("probe", &SupervisionParams::probe, "The force that tests the sign of a site's motor on arming."),
         field("hold", &SupervisionParams::hold, "The force when the site holds."),
         field("force_gain", &SupervisionParams::force_gain,
               "How an operator may change the force gain while the site runs."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
-              "Share by which the other site's clock may run slower or faster before this site goes to hold; must be "
+              "If the other site's clock is slower or faster by more than this share, the site goes to hold. Must be "
               "greater than the share of control cycles that the other site may miss."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
-              "Time without a step after which the site holds."),
-        field("answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
-              "Time within which the slave must confirm an arming, otherwise the master goes to hold. Must be longer "
-              "than the round trip; if a sign probe is set, longer than the sum of the round trip, blend_s and all "
-              "trials of the probe."),
+              "Longest time between two control cycles. After a longer one the site goes to hold."),
+        field(
+            "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
+            "If the slave does not confirm an arming within this time, the master goes to hold. Must be longer than "
+            "the round trip; with a sign probe, longer than round trip, blend_s and all trials of the probe together."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "Time in which a force ramps in when a site becomes active, and ramps out when it stops.")};
   }

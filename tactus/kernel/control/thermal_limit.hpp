@@ -30,7 +30,7 @@ class ThermalLimit {
     double time_constant_s = 10.0;
     static constexpr auto fields() {
       return List{field("continuous_force_N", &Params::continuous_force_N, units::newton, positive_up_to(100.0),
-                        "Root mean square of the force that the motor can apply continuously."),
+                        "Largest root mean square of the force that the motor can apply continuously."),
                   field("time_constant_s", &Params::time_constant_s, units::second, positive_up_to(3600.0),
                         "Time constant of the motor's winding.")};
     }

@@ -41,9 +41,9 @@ class KelvinVoigtContact {
     double damping_N_s_per_m = 2.0;
     static constexpr auto fields() {
       return List{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                        "Force per depth."),
+                        "Force per depth of penetration."),
                   field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
-                        "Force per rate of depth.")};
+                        "Force per rate of penetration.")};
     }
   };
   using Input = Penetration;

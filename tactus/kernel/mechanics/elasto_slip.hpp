@@ -67,7 +67,7 @@ class ElastoSlipSpring {
       return List{
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
                 "Average stiffness: slope of the line between the two end points of the closed force-deflection loop "
-                "at the reference deflection (the master's linkage: 3950, paper A, Table I)."),
+                "whose amplitude is reference_deflection_m (the master's linkage: 3950, paper A, Table I)."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
                 "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
@@ -76,7 +76,8 @@ class ElastoSlipSpring {
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,
                 "Deflection from rest at which the last of the spring's four friction elements begins to slip."),
           field("reference_deflection_m", &Params::reference_deflection_m, units::metre, positive,
-                "Amplitude of the closed loop that the average stiffness refers to (1 N on the master's linkage).")};
+                "Amplitude of the closed force-deflection loop that defines the average stiffness (1 N on the master's "
+                "linkage).")};
     }
   };
   using Input = Stretch;

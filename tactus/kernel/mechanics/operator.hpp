@@ -69,12 +69,13 @@ class Operator {
     double bandwidth_Hz = 5.0;
     double reaction_time_s = 0.1;
     static constexpr auto fields() {
-      return List{field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
-                        "Speed of the correction per metre of error; 0 is off. Above 8 an operator would oscillate."),
-                  field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
-                        "Corner of the first-order low-pass on the error that is corrected."),
-                  field("reaction_time_s", &Correction::reaction_time_s, units::second, between(0.0, 0.4),
-                        "Time from an error to the start of its correction.")};
+      return List{
+          field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
+                "Speed of the correction per metre of error; 0 is off. Above 8 an operator would oscillate."),
+          field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
+                "Corner frequency of the first-order low-pass on the position error that the operator corrects."),
+          field("reaction_time_s", &Correction::reaction_time_s, units::second, between(0.0, 0.4),
+                "Time from an error to the start of its correction.")};
     }
   };
 

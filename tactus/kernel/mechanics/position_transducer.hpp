@@ -23,7 +23,7 @@ class PositionTransducer {
     std::int64_t seed = 2;
     static constexpr auto fields() {
       return List{field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
-                        "The -3 dB frequency of the demodulator; below half the rate of the substeps."),
+                        "-3 dB frequency of the demodulator. Must be below half the rate of the plant's steps."),
                   field("noise_rms_m", &Params::noise_rms_m, units::metre, non_negative,
                         "Standard deviation of the white noise on every sample."),
                   field("resolution_m", &Params::resolution_m, units::metre, non_negative,

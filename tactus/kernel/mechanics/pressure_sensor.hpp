@@ -24,7 +24,7 @@ class PressureSensor {
     std::int64_t seed = 1;
     static constexpr auto fields() {
       return List{field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
-                        "The -3 dB frequency of the analogue part; below half the rate of the substeps."),
+                        "-3 dB frequency of the analogue part. Must be below half the rate of the plant's steps."),
                   field("noise_rms_Pa", &Params::noise_rms_Pa, units::pascal, non_negative,
                         "Standard deviation of the white noise on every sample."),
                   field("resolution_Pa", &Params::resolution_Pa, units::pascal, non_negative,

@@ -37,7 +37,7 @@ class KalmanPredictor {
     double horizon_s = 0.0036;
     static constexpr auto fields() {
       return List{field("kinematics", &Params::kinematics,
-                        "Quantity that is constant except for noise: constant-velocity or constant-acceleration."),
+                        "Motion model: constant velocity or constant acceleration, apart from the process noise."),
                   field("process_noise", &Params::process_noise, units::none, positive,
                         "q: standard deviation of the change of velocity (signal/s) or acceleration (signal/s^2) "
                         "within a second."),

@@ -29,21 +29,22 @@ struct ArmJoint {
   static constexpr auto fields() {
     using J = ArmJoint;
     namespace u = arm::units;
-    return List{
-        field("start_rad", &J::start_rad, u::radian, any_finite,
-              "Position at the start of a tap; a follower that is commanded joint by joint starts at the leader's."),
-        field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
-              "Inertia of the rotor, at the joint's side of the gear."),
-        field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
-              "Stiffness of this joint divided by joint_stiffness_N_m_per_rad of its arm, if joints are elastic."),
-        field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
-              "Step of the position that the drive reports; 0: exact."),
-        field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
-              "Step of the velocity that the drive reports."),
-        field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
-              "Step of the torque that the drive reports."),
-        field("play_rad", &J::play_rad, u::radian, between(0.0, 0.1),
-              "Backlash of the gear, from flank to flank, at the joint; needs an elastic joint.")};
+    return List{field("start_rad", &J::start_rad, u::radian, any_finite,
+                      "Position at the start of a tap. A follower that is commanded joint by joint starts at the "
+                      "leader's position."),
+                field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
+                      "Rotor inertia, referred to the joint's side of the gear."),
+                field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
+                      "Only with elastic joints: factor for this joint on joint_stiffness_N_m_per_rad, on the assumed "
+                      "stiffness and on joint_damping_N_m_s_per_rad of its arm."),
+                field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
+                      "Step of the position that the drive reports; 0: exact."),
+                field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
+                      "Step of the velocity that the drive reports."),
+                field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
+                      "Step of the torque that the drive reports."),
+                field("play_rad", &J::play_rad, u::radian, between(0.0, 0.1),
+                      "Backlash of the gear from flank to flank, referred to the joint. Needs an elastic joint.")};
   }
 };
 
@@ -52,9 +53,9 @@ struct ToolPoint {
   double y_m = 0.0;
   double z_m = 0.0;
   static constexpr auto fields() {
-    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Position along x of the last link."),
-                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Position along y of the last link."),
-                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Position along z of the last link.")};
+    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Position along the x axis of the last link."),
+                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Position along the y axis of the last link."),
+                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Position along the z axis of the last link.")};
   }
 };
 
@@ -70,20 +71,22 @@ struct ArmParams {
   static constexpr auto fields() {
     using A = ArmParams;
     return List{field("urdf", &A::urdf,
-                      "URDF of the arm, z up; a relative path counts from the experiment's file. Its effort limits "
-                      "limit the motors; its damping and friction act at the joints."),
+                      "URDF of the arm, z up. A relative path starts at the folder of the experiment file. Its effort "
+                      "limits limit the motors; its damping and friction act at the joints."),
                 field("tip", &A::tip,
-                      "Name of the last link of the arm. Needed if the URDF has branches, or links after it such as "
-                      "the fingers of a gripper; these then count as fixed. Empty: the end of the only chain."),
+                      "Link at which the arm ends. Joints off the chain to it, such as those of a gripper's fingers, "
+                      "count as fixed. Needed if the URDF has branches or moving joints beyond the tip. Empty: the end "
+                      "of the only chain."),
                 field("tool", &A::tool, "The point that the operator holds, or that touches the surface."),
                 field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
                       between(0.0, 1e6), "Stiffness of the transmission between motor and link; 0 is rigid."),
                 field("assumed_joint_stiffness_N_m_per_rad", &A::assumed_joint_stiffness_N_m_per_rad,
                       Unit{"N m/rad", "_N_m_per_rad"}, between(0.0, 1e6),
-                      "Value of that stiffness in models and observers of elastic joints; 0: the true value."),
+                      "Joint stiffness that models and observers of elastic joints assume; 0: the true value, "
+                      "joint_stiffness_N_m_per_rad."),
                 field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
                       arm::units::newton_metre_second_per_radian, between(0.0, 100.0),
-                      "Damping in parallel with that stiffness."),
+                      "Damping in parallel with joint_stiffness_N_m_per_rad."),
                 field("joints", &A::joints, "Properties of each joint that the URDF does not contain.")};
   }
 };
@@ -97,9 +100,9 @@ struct ArmPairParams : ArmParams {
     return joined(
         ArmParams::fields(),
         List{field("follower", &ArmPairParams::follower,
-                   "The follower, if it differs from the leader: state the urdf and all other keys here. Without a "
-                   "urdf here it is like the leader. Joint i of the leader, counted from the base, commands the same "
-                   "angle of joint i of the follower, unless control.follower.coupling is tool.")});
+                   "The follower, if it differs from the leader. Set urdf and all other keys here. Without a urdf the "
+                   "follower is like the leader. Joint i of the leader, counted from the base, commands the angle of "
+                   "joint i of the follower, unless control.follower.coupling is tool.")});
   }
 };
 
@@ -110,9 +113,9 @@ struct ArmControlParams : arm_control::ArmLeader::Params {
     return joined(arm_control::ArmLeader::Params::fields(),
                   List{field("follower", &ArmControlParams::follower, "The follower's site."),
                        field("tare", &ArmControlParams::tare,
-                             "Measurement of the errors of both arms' gravity compensation: with simulated taps before "
-                             "the operator takes the leader, on a rig by the command tare, which averages two cycles "
-                             "if cycles is 0.")});
+                             "Measurement of the error of both arms' gravity compensation. With simulated taps it "
+                             "takes place before the operator takes the leader. On a rig the operator requests it with "
+                             "the command tare; it then averages two cycles if cycles is 0.")});
   }
 };
 
@@ -121,13 +124,14 @@ struct ArmClockParams {
   double plant_step_s = 1e-4;
   std::int64_t extra_delay_cycles = 0;
   static constexpr auto fields() {
-    return List{
-        field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
-              "Control cycles per second; a command acts from the next control cycle on."),
-        field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
-              "Step of the simulated arms, rounded so that a control cycle is a whole number of them."),
-        field("extra_delay_cycles", &ArmClockParams::extra_delay_cycles, between(0, 20),
-              "Additional control cycles until a command acts on a simulated arm; the sites assume one cycle in all.")};
+    return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
+                      "Control cycles per second; a command acts from the next control cycle on."),
+                field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
+                      "Integration step of the simulated arms. It is shortened if necessary, so that a control cycle "
+                      "is a whole number of steps."),
+                field("extra_delay_cycles", &ArmClockParams::extra_delay_cycles, between(0, 20),
+                      "Additional control cycles until a command acts on a simulated arm. The sites always assume one "
+                      "cycle in all.")};
   }
 };
 
@@ -135,8 +139,8 @@ struct ProbeTorque {
   double torque_N_m = 0.0;
   static constexpr auto fields() {
     return List{field("torque_N_m", &ProbeTorque::torque_N_m, arm::units::newton_metre, between(0.0, 100.0),
-                      "Peak of the torque that tests the joint's motor; above the friction of the joint. 0: that of "
-                      "supervision.probe.")};
+                      "Peak torque of the test of the joint's motor. Must be greater than the friction of the joint. "
+                      "0: supervision.probe.force_N.")};
   }
 };
 
@@ -165,9 +169,9 @@ struct ArmSupportParams {
               "Tolerated error of gravity compensation as a share of a joint's gravity torque, but at least the torque "
               "of the motor test. Above it the arm is released."),
         field("most_rad", &P::most_rad, arm::units::radian, positive_up_to(0.03),
-              "Travel of a joint during the ramp above which the arm is released; m for a joint that slides."),
+              "Travel of a joint during the ramp above which the arm is released; in m for a sliding joint."),
         field("most_rad_per_s", &P::most_rad_per_s, arm::units::radian_per_second, positive_up_to(0.5),
-              "Speed of a joint during the ramp above which the arm is released; m/s for a joint that slides.")};
+              "Speed of a joint during the ramp above which the arm is released; in m/s for a sliding joint.")};
   }
 };
 
@@ -207,7 +211,7 @@ struct ArmTeleoperatorParams {
                 field("control", &P::control, "The sites of both arms."), field("servo", &P::servo, "The clocks."),
                 field("rig", &P::rig,
                       "Only with --device and tactus faults: gates and supervision between the sites and the motors of "
-                      "a rig. For a joint that turns, N, m and m/s in a key mean N m, rad and rad/s.")};
+                      "a rig. For a rotary joint, N, m and m/s in a key mean N m, rad and rad/s.")};
   }
 };
 

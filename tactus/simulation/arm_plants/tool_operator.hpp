@@ -44,18 +44,19 @@ class ToolOperator {
     double tremor_amplitude_m = 0.0;
     double tremor_frequency_Hz = 10.0;
     static constexpr auto fields() {
-      return List{field("hand", &Params::hand, "The passive impedance of hand and arm at the tool."),
-                  field("correction_gain_per_s", &Params::correction_gain_per_s, units::per_second, between(0.0, 8.0),
-                        "Speed per metre of error at which the operator slowly corrects the tool's position; 0: no "
-                        "correction."),
-                  field("correction_bandwidth_Hz", &Params::correction_bandwidth_Hz, units::hertz, between(0.1, 20.0),
-                        "Corner of the first-order low-pass on the error that is corrected."),
-                  field("reaction_time_s", &Params::reaction_time_s, units::second, between(0.0, 0.4),
-                        "Time from an error to the start of its correction."),
-                  field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
-                        "Amplitude of physiological tremor on the intended path, along each axis."),
-                  field("tremor_frequency_Hz", &Params::tremor_frequency_Hz, units::hertz, between(1.0, 30.0),
-                        "Frequency of the tremor.")};
+      return List{
+          field("hand", &Params::hand, "The passive impedance of hand and arm at the tool."),
+          field("correction_gain_per_s", &Params::correction_gain_per_s, units::per_second, between(0.0, 8.0),
+                "Speed with which the operator slowly corrects the tool's position, per metre of error; 0: no "
+                "correction."),
+          field("correction_bandwidth_Hz", &Params::correction_bandwidth_Hz, units::hertz, between(0.1, 20.0),
+                "Corner frequency of the first-order low-pass on the position error that the operator corrects."),
+          field("reaction_time_s", &Params::reaction_time_s, units::second, between(0.0, 0.4),
+                "Time from an error to the start of its correction."),
+          field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
+                "Amplitude of physiological tremor on the intended path, along each axis."),
+          field("tremor_frequency_Hz", &Params::tremor_frequency_Hz, units::hertz, between(1.0, 30.0),
+                "Frequency of the tremor.")};
     }
   };
 

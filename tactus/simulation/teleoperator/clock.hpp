@@ -12,8 +12,9 @@ using station::ServoParams;
 struct PlantClockParams {
   double longest_step_s = 10e-6;
   static constexpr auto fields() {
-    return List{field("longest_step_s", &PlantClockParams::longest_step_s, units::second, between(1e-7, 1e-4),
-                      "Longest step of the plants; a control cycle is cut into equal steps no longer than this.")};
+    return List{field(
+        "longest_step_s", &PlantClockParams::longest_step_s, units::second, between(1e-7, 1e-4),
+        "Longest integration step of the plants. A control cycle is divided into equal steps that are not longer.")};
   }
 };
 

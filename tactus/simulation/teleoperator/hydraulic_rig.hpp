@@ -21,13 +21,13 @@ struct ValveCurrentModelParams {
   double derivative_filter_s = 0.003;
   static constexpr auto fields() {
     using P = ValveCurrentModelParams;
-    return List{
-        field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere, positive,
-              "K_a: the stall force divided by the current that opens the valve fully."),
-        field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s: moving mass, as weighed."),
-        field("force_filter_s", &P::force_filter_s, units::second, non_negative, "T_f: low-pass on command and force."),
-        field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative,
-              "T_d: low-pass on velocity.")};
+    return List{field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere, positive,
+                      "K_a: the stall force divided by the current that opens the valve fully."),
+                field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s: moving mass, as weighed."),
+                field("force_filter_s", &P::force_filter_s, units::second, non_negative,
+                      "T_f: time constant of the low-pass on command and force."),
+                field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative,
+                      "T_d: time constant of the low-pass on velocity.")};
   }
 };
 

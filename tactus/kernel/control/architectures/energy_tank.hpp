@@ -39,8 +39,8 @@ class EnergyTank {
       return List{field("desired_level_J", &Params::desired_level_J, units::joule, positive_up_to(100.0),
                         "Level at the start; below this level the master draws energy from the hand."),
                   field("capacity_J", &Params::capacity_J, units::joule, positive_up_to(1000.0),
-                        "Level above which energy is discarded, so that a long press does not store the energy for a "
-                        "long instability."),
+                        "Level above which energy is discarded. Without this limit a long press would store the energy "
+                        "for a long instability."),
                   field("transfer_per_s", &Params::transfer_per_s, units::per_second, between(0.0, 1e4),
                         "Share of the level that is sent to the other site per second."),
                   field("refill_damping_N_s_per_m", &Params::refill_damping_N_s_per_m, units::newton_second_per_metre,

@@ -78,7 +78,7 @@ class PositionForceMaster {
                 "Limit of the displayed force; it applies to the motor and to the actuator on the handle separately."),
           field("hand_compensation_Hz", &Params::hand_compensation_Hz, units::hertz, non_negative,
                 "Frequency up to which the master's dynamics between motor and hand are compensated, so that the hand "
-                "receives the force at the slave; below half the servo rate. 0 is off."),
+                "receives the displayed force. Must be below half the servo rate. 0: no compensation."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_model", &Params::cancellation_model,
                 "Order of the model of cancellation: one, two or three masses; only sixth-order is nonlinear."),
@@ -87,7 +87,9 @@ class PositionForceMaster {
                 "Velocity from which the sixth-order model computes its Coulomb friction: induced motion only "
                 "(at-rest), or with the intended motion (total-velocity)."),
           field("operator_estimate", &Params::operator_estimate,
-                "Source of the firmness of the operator's grip for cancellation."),
+                "Source of the firmness of the operator's grip that cancellation uses. off: the model's hand, which is "
+                "constant. online: estimated from the motion that the displayed force causes. scheduled: measured by a "
+                "grip sensor."),
           field("model", &Params::model, "The controller's model of master and hand."),
           field("damping", &Params::damping, "Local derivative damping of the master's motor."),
           field("command_filter", &Params::command_filter, "Filter of the position command."),

@@ -18,8 +18,8 @@ struct ProjectionParams {
               "alpha: share of the force that is displayed even if the hand does not resist it; 1 is position-force."),
         field("negligible_force_N", &ProjectionParams::negligible_force_N, units::newton,
               Bounds{.lower = 1e-6, .upper = 100.0},
-              "Square root of epsilon: below this hand force, the displayed part that depends on the direction of the "
-              "hand force fades to zero."),
+              "Square root of epsilon. The part of the display that depends on the direction of the hand force fades "
+              "to zero below this hand force."),
         field("hand_force_cutoff_Hz", &ProjectionParams::hand_force_cutoff_Hz, units::hertz, positive,
               "Low-pass of the estimate of the hand force; below 0.44 of the sample rate.")};
   }

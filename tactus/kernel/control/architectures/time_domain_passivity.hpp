@@ -62,8 +62,8 @@ struct PassivityParams {
         field("reflected_force", &PassivityParams::reflected_force, "Force that the slave sends back."),
         field("damping_limit_N_s_per_m", &PassivityParams::damping_limit_N_s_per_m, units::newton_second_per_metre,
               between(0.0, 1000.0),
-              "Largest damping at the master's motor. If passivity needs more, the master only cancels a force that "
-              "drives the hand."),
+              "Largest damping at the master's motor. The damping force may be larger only as far as it cancels a "
+              "displayed force in the direction of motion."),
         field("recovery_time_s", &PassivityParams::recovery_time_s, units::second, between(0.002, 10.0),
               "Time constant with which the slave corrects the position error that its passivity controller causes."),
         field("velocity", &PassivityParams::velocity, "Filter of the velocity on which the master's damping acts.")};

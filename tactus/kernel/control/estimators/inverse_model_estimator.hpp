@@ -94,7 +94,8 @@ class InverseModelEstimator {
     static constexpr auto fields() {
       return List{
           field("form", &Params::form,
-                "Form of the linear model: mass-damping (the keys marked so) or rational (the section plant)."),
+                "Form of the linear model. mass-damping: the keys that are marked (mass-damping). rational: the "
+                "transfer function in plant."),
           field("mass_kg", &Params::mass_kg, units::kilogram, non_negative, "Moving mass M (mass-damping)."),
           field("viscous_damping_N_s_per_m", &Params::viscous_damping_N_s_per_m, units::newton_second_per_metre,
                 non_negative, "Viscous damping h (mass-damping)."),
@@ -105,11 +106,11 @@ class InverseModelEstimator {
           field("sensor_gain", &Params::sensor_gain, units::none, any_finite,
                 "K_s: measured position for one metre; not 0."),
           field("force_filter_s", &Params::force_filter_s, units::second, non_negative,
-                "T_f: low-pass on command and force; 0: no filter."),
+                "T_f: time constant of the low-pass on command and force; 0: no filter."),
           field("derivative_filter_s", &Params::derivative_filter_s, units::second, non_negative,
-                "T_d: low-pass on velocity; 0: no filter."),
+                "T_d: time constant of the low-pass on velocity; 0: no filter."),
           field("declared_delay_s", &Params::declared_delay_s, units::second, non_negative,
-                "Sum of those delays and lags of actuator and sensor that prediction must compensate; 0: none."),
+                "Sum of the delays and lags of actuator and sensor that prediction is to compensate; 0: none."),
           field("prediction", &Params::prediction,
                 "Prediction of the measured position, by blocks or by an alternative method.")};
     }

@@ -63,7 +63,7 @@ struct MasterModel {
                 field("handle", &MasterModel::handle, "Handle."),
                 field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections."),
                 field("linear_hand_stiffening", &MasterModel::linear_hand_stiffening, units::none, between(1.0, 1000.0),
-                      "Factor on the stiffness of the hand in the linear models, which have no quintic spring. They "
+                      "Factor on the hand's stiffness in the linear models, which have no quintic spring. These models "
                       "underestimate slow deflections by about this factor.")};
   }
 };

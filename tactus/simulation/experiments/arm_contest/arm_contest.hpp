@@ -39,11 +39,13 @@ struct ArmContestTask {
         field("taps", &T::taps, between(1, 100000), "Number of taps at each gain that is tried."),
         field("seed", &T::seed, non_negative, "Seed from which the taps are drawn."),
         field("pose", &T::pose, between(0, 1000), "Initial pose of both arms, as in `arm-tapping`."),
-        field("direction", &T::direction, "Direction of the surface to which the operator moves."),
+        field("direction", &T::direction,
+              "Direction in which the operator taps: down, or along the x or y axis of the base."),
         field("model_error", &T::model_error, units::none, between(0.0, 0.5),
-              "Largest error of the model of induced motion, as a share; each tap draws its errors."),
-        field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0), "Smallest gain of the search."),
-        field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0), "Largest gain of the search."),
+              "Largest error of the model of induced motion, as a share, as in `arm-tapping`."),
+        field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0), "Smallest force gain of the search."),
+        field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0),
+              "Largest force gain of the search."),
         field("bare", &T::bare,
               "File that removes the recommended settings from a pair, for all methods whose name does not start with "
               "`recommended`.")};
@@ -59,8 +61,8 @@ struct ArmContestPair {
     using P = ArmContestPair;
     return List{field("name", &P::name, "Name of the pair in the table; empty: this pair does not exist."),
                 field("file", &P::file,
-                      "Experiment file of the kind arm-tapping with the recommended settings; a relative path counts "
-                      "from this file."),
+                      "Experiment file of the kind arm-tapping with the recommended settings. A relative path starts "
+                      "at the folder of this file."),
                 field("with", &P::with, "File whose keys replace those of that experiment; empty: none.")};
   }
 };
@@ -99,8 +101,9 @@ struct ArmContestParams {
   ArmContestHands hands;
   static constexpr auto fields() {
     using P = ArmContestParams;
-    return List{field("task", &P::task, "The taps and the search."), field("pairs", &P::pairs, "The arms."),
-                field("hands", &P::hands, "The hands that hold the leader.")};
+    return List{
+        field("task", &P::task, "The taps, and the search for the largest force gain at which all taps settle."),
+        field("pairs", &P::pairs, "The arms."), field("hands", &P::hands, "The hands that hold the leader.")};
   }
 };
 

@@ -80,7 +80,7 @@ struct ArmFaultsParams {
                         .release_s = 1.0}};
   static constexpr auto fields() {
     using P = ArmFaultsParams;
-    return List{field("seeds", &P::seeds, between(1, 1000000), "Number of runs of each fault; task.seed draws them."),
+    return List{field("seeds", &P::seeds, between(1, 1000000), "Number of runs of each fault, drawn from task.seed."),
                 field("only", &P::only, "Identifier of the only fault to run; empty: all."),
                 field("bounds", &P::bounds, "Limits of the effects of a fault on people, measured at the tools.")};
   }
@@ -118,8 +118,8 @@ struct ArmModelErrors {
                 field("torque_constant", &E::torque_constant, units::none, between(0.0, 0.5),
                       "Largest error of each motor's torque constant in its drive, as a share."),
                 field("payload_kg", &E::payload_kg, units::kilogram, between(0.0, 10.0),
-                      "Largest difference between the mass at each tool and the mass there in the models. Each tap "
-                      "draws it from minus to plus this value.")};
+                      "Largest difference between the true mass at each tool and the mass that the models assume "
+                      "there. Each tap draws it from minus to plus this value.")};
   }
   [[nodiscard]] bool any() const noexcept {
     return mass > 0.0 || centre_m > 0.0 || friction > 0.0 || torque_constant > 0.0 || payload_kg > 0.0;
@@ -147,10 +147,11 @@ struct ArmTappingTask {
                 field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
                 field("seed", &T::seed, non_negative, "Seed from which the ensemble is drawn."),
                 field("pose", &T::pose, between(0, 1000),
-                      "Initial pose of both arms. 0: start_rad of each joint. Other numbers: seed of a pose drawn "
-                      "within 0.6 rad of start_rad, whose distance from a singular pose is at least three quarters of "
-                      "that of start_rad."),
-                field("direction", &T::direction, "Direction of the surface to which the operator moves."),
+                      "Initial pose of both arms. 0: start_rad of each joint. Other numbers: seed of a random pose "
+                      "within 0.6 rad of start_rad. Its distance from a singular pose is at least three quarters of "
+                      "the distance of the start_rad pose. With the coupling tool only the follower's pose is random."),
+                field("direction", &T::direction,
+                      "Direction in which the operator taps: down, or along the x or y axis of the base."),
                 field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
                       "Slowest approach: intended speed at the surface."),
                 field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
@@ -164,10 +165,10 @@ struct ArmTappingTask {
                       "Time for which the operator holds still in the air, to measure the force on the hand and the "
                       "drift at rest."),
                 field("model_error", &T::model_error, units::none, between(0.0, 0.5),
-                      "Largest error of the model of induced motion, as a share: mass and inertia of each link, "
-                      "armature and friction of each joint, mass, stiffness and damping of the hand. Each tap draws "
-                      "them uniformly from minus to plus this share."),
-                field("errors", &T::errors, "Errors of the sites' other parameters, drawn for each tap.")};
+                      "Largest error of the model of induced motion, as a share. It applies to mass and inertia of "
+                      "each link, armature and friction of each joint, and mass, stiffness and damping of the hand. "
+                      "Each tap draws each error uniformly from minus to plus this share."),
+                field("errors", &T::errors, "Errors of the sites' other model parameters, drawn for each tap.")};
   }
 };
 

@@ -41,7 +41,8 @@ struct ArmVibrationTask {
               "The operator moves the tool by this distance within two seconds, in the direction in which the joint "
               "moves it, and then holds the tool still."),
         field("push_N", &T::push_N, units::newton, between(0.0, 100.0),
-              "If nobody holds the tool: largest force of a push of 0.1 s on the leader's tool in that direction."),
+              "If nobody holds the tool: largest force of a push of 0.1 s on the leader's tool, in the direction in "
+              "which the joint moves it."),
         field("duration_s", &T::duration_s, units::second, between(3.5, 60.0),
               "Duration of the run. The reach or push starts at 0.5 s. The interval from 1 s to 2 s and the last "
               "second are judged."),
@@ -67,9 +68,10 @@ struct VibrationCauses {
               between(100.0, 1e5), "Stiffness of the transmission at the ends of the backlash."),
         field("flank_damping_N_m_s_per_rad", &C::flank_damping_N_m_s_per_rad,
               arm::units::newton_metre_second_per_radian, between(0.0, 20.0),
-              "Damping in parallel with this stiffness."),
+              "Damping in parallel with flank_stiffness_N_m_per_rad."),
         field("velocity_scale", &C::velocity_scale, units::none, between(0.1, 10.0),
-              "The host's range of velocity (VMAX) divided by the drive's own, at the leader's joint."),
+              "Velocity range (VMAX) in the host's table divided by the range of the drive itself, for the leader's "
+              "joint. The host reads the velocity too large by this factor and commands it too small by it."),
         field("friction_share", &C::friction_share, units::none, between(0.0, 2.0),
               "Friction of all joints divided by the value in their URDF; below 1 the feed-forward is too large."),
         field("lost_share", &C::lost_share, units::none, between(0.0, 0.98),
@@ -97,8 +99,9 @@ struct VibrationHost {
         field("follower_phase", &H::follower_phase, units::none, between(0.0, 0.999),
               "Delay of the follower's loop after the leader's, as a share of a control cycle."),
         field("exchange_phase", &H::exchange_phase, units::none, between(0.0, 0.999),
-              "The same for the loop that transfers readings between the arms. If both are 0, all loops run on one "
-              "clock and this one runs first."),
+              "Delay of the loop that transfers readings between the arms after the leader's loop, as a share of a "
+              "control cycle. If this key and follower_phase are 0, all loops run on one clock and this loop runs "
+              "first."),
         field("late_s", &H::late_s, units::second, between(0.0, 0.1),
               "Largest lateness of a control cycle, drawn uniformly, as on a kernel without real-time scheduling."),
         field("plant_step_s", &H::plant_step_s, units::second, between(1e-5, 2e-4), "Step of the simulated arms.")};

@@ -47,13 +47,13 @@ class ReleasedLaw {
     double friction_share = 1.0;
     static constexpr auto fields() {
       using P = Params;
-      return List{
-          field("joints", &P::joints,
-                "Gains and friction of each joint, with the values of config/leader.yaml of openarm_teleop."),
-          field("velocity_share", &P::velocity_share, tactus::units::none, between(0.0, 1.0),
-                "Share of the other arm's velocity that is commanded to a drive; 0 damps toward zero velocity."),
-          field("friction_share", &P::friction_share, tactus::units::none, between(0.0, 2.0),
-                "Share of the feed-forward against friction that is commanded.")};
+      return List{field("joints", &P::joints,
+                        "Gains and friction of each joint, with the values of config/leader.yaml of openarm_teleop."),
+                  field("velocity_share", &P::velocity_share, tactus::units::none, between(0.0, 1.0),
+                        "Share of the other arm's velocity in a drive's velocity target. 0: the drive damps its joint "
+                        "toward zero velocity."),
+                  field("friction_share", &P::friction_share, tactus::units::none, between(0.0, 2.0),
+                        "Share of the feed-forward against friction that is commanded.")};
     }
   };
 

@@ -29,9 +29,9 @@ struct GainSearch : TapSeries {
                              "A second force limit, greater than `control.force_limit_N`, so that the displayed force "
                              "saturates less."),
                        field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
-                             "Gain at which the search for the largest gain begins."),
+                             "Smallest force gain of the search."),
                        field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0),
-                             "Gain at which the search ends.")},
+                             "Largest force gain of the search.")},
                   TapSeries::fields());
   }
 };
@@ -50,7 +50,8 @@ struct ContestParams : simulation::Teleoperator::Params {
   ContestTask task;
   static constexpr auto fields() {
     return joined(simulation::Teleoperator::Params::fields(),
-                  List{field("task", &ContestParams::task, "The taps and the search.")});
+                  List{field("task", &ContestParams::task,
+                             "The taps, and the search for the largest force gain at which all taps settle.")});
   }
 };
 

@@ -30,15 +30,15 @@ struct FaultsTask {
                 field("seed", &FaultsTask::seed, non_negative, "Seed from which every run is drawn."),
                 field("only", &FaultsTask::only, "Identifier of the only fault to run; empty: all."),
                 field("longest_cut_s", &FaultsTask::longest_cut_s, units::second, between(0.02, 600.0),
-                      "Longest cut of the link."),
+                      "Longest interruption of the link."),
                 field("light_grip_fraction", &FaultsTask::light_grip_fraction, units::none, between(0.01, 1.0),
                       "Damping of the light grip divided by that of the operator."),
                 field("diverged_above_J", &FaultsTask::diverged_above_J, units::joule, positive,
-                      "A run diverged if the master's motor delivered more energy than this."),
+                      "A run counts as diverged if the master's motor delivered more energy than this."),
                 field("bounds", &FaultsTask::bounds, "Limits of the effects of a fault on people."),
                 field("real_time_seeds", &FaultsTask::real_time_seeds, between(1, 1000),
                       "Number of runs of each fault in real time, if requested. They repeat the first runs in virtual "
-                      "time, with no cut of the link longer than a second.")};
+                      "time, but no interruption of the link is longer than one second.")};
   }
 };
 

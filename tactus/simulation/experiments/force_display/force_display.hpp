@@ -38,7 +38,7 @@ struct ForceProfileParams {
     return List{
         field("file", &ForceProfileParams::file,
               "Recording of the force: CSV with a header, or MATLAB v5. Empty: a synthetic transient. A relative path "
-              "counts from the current folder."),
+              "starts at the current folder."),
         field("variable", &ForceProfileParams::variable,
               "CSV: the column's name. MATLAB: the variable, such as scope.signals(2).values."),
         field("column", &ForceProfileParams::column, between(1, 1e6), "MATLAB: the column of the variable, from 1."),
@@ -47,9 +47,10 @@ struct ForceProfileParams {
         field("start_s", &ForceProfileParams::start_s, units::second, between(0.0, 1e6),
               "Start of the part that is displayed, from the recording's first sample."),
         field("duration_s", &ForceProfileParams::duration_s, units::second, between(0.005, 10.0),
-              "Length of this part, or of the synthetic transient."),
+              "Length of the displayed part of the recording, or of the synthetic transient."),
         field("scale_N", &ForceProfileParams::scale_N, units::newton, between(-1e6, 1e6),
-              "Newtons per unit of the recording; 0 scales the largest magnitude of this part to the force limit."),
+              "Newtons per unit of the recording; 0: the largest magnitude of the displayed part becomes the force "
+              "limit."),
         field("frequency_Hz", &ForceProfileParams::frequency_Hz, units::hertz, between(1.0, 1000.0),
               "Synthetic transient: frequency."),
         field("decay_time_s", &ForceProfileParams::decay_time_s, units::second, between(1e-4, 1.0),

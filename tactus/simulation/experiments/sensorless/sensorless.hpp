@@ -26,7 +26,8 @@ struct SensorlessParams : simulation::Teleoperator::Params {
   SensorlessTask task;
   static constexpr auto fields() {
     return joined(simulation::Teleoperator::Params::fields(),
-                  List{field("task", &SensorlessParams::task, "The taps and the search.")});
+                  List{field("task", &SensorlessParams::task,
+                             "The taps, and the search for the largest force gain at which all taps settle.")});
   }
 };
 

@@ -40,8 +40,8 @@ struct TapSeries {
                 field("observation_s", &TapSeries::observation_s, units::second, between(0.15, 10.0),
                       "Time for which a tap is observed from the first touch, while the operator keeps pressing."),
                 field("model_error", &TapSeries::model_error, units::none, between(0.0, 0.5),
-                      "Largest error of the model's masses, linkage stiffness and operator damping, as a share; each "
-                      "tap draws them uniformly from minus to plus this share."),
+                      "Largest error of the model's masses, linkage stiffness and operator damping, as a share. Each "
+                      "tap draws each error uniformly from minus to plus this share."),
                 field("mismatch", &TapSeries::mismatch, "Fixed errors of the model, in addition to the drawn ones.")};
   }
 };
