@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Every component configures alone, with those on which it builds, and finds the libraries of these alone; so does what is
-# left when one is left out. `kernel` is built and installed, and a loop around cancellation builds against it and runs.
+# left when one is left out. `kernel` is built and installed, and a loop around cancellation builds against it and runs. Then
+# `identification` and `hardware` are built, without the simulator.
 # SOURCE is the source folder of tactus, SCRATCH a folder to work in; GENERATOR, COMPILER and BUILD_TYPE as in the build.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../run.cmake)
@@ -122,3 +123,7 @@ execute_process(COMMAND ${configure} -S ${SCRATCH}/asks -B ${SCRATCH}/asks/build
 if(status EQUAL 0 OR NOT refusal MATCHES "has no component `hardware`; it has:[ \n]+kernel")
   message(FATAL_ERROR "a component that is not installed was found, or is not named:\n${refusal}")
 endif()
+
+# Two more components are built with those on which they build. The folder already has the kernel.
+run(${configure} -S ${SOURCE} -B ${SCRATCH}/kernel "-DTACTUS_COMPONENTS=identification;hardware")
+run(${CMAKE_COMMAND} --build ${SCRATCH}/kernel --parallel 1)

@@ -210,10 +210,12 @@ TEST(BlockingLink, ADriverThatFailsMakesTheDeviceSilentUntilItIsOpenedAgain) {
 
 TEST(BlockingLink, ADriverThatCannotBeOpenedAgainEndsWhenItIsStopped) {
   const auto seen = std::make_shared<Seen>();
+  std::atomic<bool> fails{false};
   auto link = *BlockingLink::start(
-      std::make_unique<Driver>(seen, [](int cycle) { return cycle > 3 ? Check(failure("cable")) : Check{}; }),
+      std::make_unique<Driver>(seen, [&fails](int) { return fails ? Check(failure("cable")) : Check{}; }),
       longest_silence_s);
   ASSERT_FALSE(link->wait_until_asked(patient));
+  fails = true;
   ASSERT_TRUE(becomes([&] { return seen->closed > 1; }));
   link->stop();
   EXPECT_FALSE(link->running());

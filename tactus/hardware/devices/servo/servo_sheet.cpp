@@ -32,7 +32,7 @@ MotorSheet ServoBus::sheet(std::size_t motor) const {
   const double limit_A = static_cast<double>(servo.limit) * servo.model.current_unit_A;
   return {.model = servo.wrong == Wrong::model ? model_named(servo.found) : std::string(),
           .scales = servo.reading.answers == 0 ? std::string()
-                    : limit_A > 0.0            ? format_number(limit_A) + " A"
+                    : limit_A > 0.0            ? rounded_number(limit_A) + " A"
                                                : "no force",
           .firmware = servo.firmware >= 0 ? std::to_string(servo.firmware) : std::string(),
           .torque_limit_Nm = limit_A * servo.model.torque_Nm_per_A,
