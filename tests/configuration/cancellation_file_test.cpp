@@ -2,12 +2,12 @@
 #include <tactus/data/configuration/cancellation_file.hpp>
 #include <tactus/data/configuration/toml_writer.hpp>
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace tactus::configuration {
 namespace {
@@ -41,7 +41,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 TEST(CancellationFile, HasTheModelAndTheMethod) {
-  const auto params = read_cancellation(write("[control]\ncancellation_friction = \"at-rest\"\n" + text_of(model_of_a_lever())));
+  const auto params =
+      read_cancellation(write("[control]\ncancellation_friction = \"at-rest\"\n" + text_of(model_of_a_lever())));
   ASSERT_TRUE(params) << describe(params.error());
   EXPECT_EQ(params->model.master.motor.mass_kg, 0.0196);
   EXPECT_EQ(params->model.master.motor.friction_N, 0.053);
@@ -80,7 +81,8 @@ TEST(CancellationFile, AWrongKeyOrValueIsRefusedWithItsPlace) {
   const auto document = Document::parse("[control.model.motor]\nmass_kg = 0.02\n", "model.toml");
   ASSERT_TRUE(document);
   const Error located = locate_cancellation(
-      *document, {.code = ErrorCode::out_of_bounds, .parameter = "model.master.motor.mass_kg", .message = "m", .place = {}});
+      *document,
+      {.code = ErrorCode::out_of_bounds, .parameter = "model.master.motor.mass_kg", .message = "m", .place = {}});
   EXPECT_EQ(located.parameter, "control.model.motor.mass_kg");
   EXPECT_EQ(located.place, "model.toml:2:11");
 }

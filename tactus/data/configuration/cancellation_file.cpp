@@ -38,7 +38,8 @@ struct CancellationFile {
 
 constexpr std::string_view model_section = "control.model";
 /// Keys of the model that do not describe a device: their defaults suit any.
-constexpr std::array<std::string_view, 2> of_the_method{"control.model.linear_hand_stiffening", "control.model.hand.guard_m"};
+constexpr std::array<std::string_view, 2> of_the_method{"control.model.linear_hand_stiffening",
+                                                        "control.model.hand.guard_m"};
 
 /// The key of the file that a parameter of `Cancellation::Params` is.
 std::string key_in_file(std::string_view parameter) {
@@ -78,8 +79,9 @@ Check check_model_is_complete(const Document& document) {
     if (std::ranges::find(written, binding.path) != written.end()) continue;
     return Error{.code = ErrorCode::missing,
                  .parameter = std::string(binding.path),
-                 .message = "the model lacks it: write every key of [control.model.motor], cable, drum, linkage, handle and "
-                            "hand, because the default belongs to another leader",
+                 .message =
+                     "the model lacks it: write every key of [control.model.motor], cable, drum, linkage, handle and "
+                     "hand, because the default belongs to another leader",
                  .place = document.name()};
   }
   return std::nullopt;

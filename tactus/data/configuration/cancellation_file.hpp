@@ -11,10 +11,10 @@ namespace tactus::configuration {
 /// Parameters of a `control::Cancellation` from a model file, such as `tactus identify quick --out` writes:
 /// `read_cancellation("model.toml")`.
 ///
-/// The file has every key of the tables `[control.model.motor]`, `cable`, `drum`, `linkage`, `handle` and `hand`, because a
-/// default would be the value of another leader. `hand.guard_m` and `[control.model] linear_hand_stiffening` may be missing.
-/// The file may also have `control.cancellation_model`, `control.cancellation_step` and `control.cancellation_friction`.
-/// Quantities are in SI units, at the hand.
+/// The file has every key of the tables `[control.model.motor]`, `cable`, `drum`, `linkage`, `handle` and `hand`,
+/// because a default would be the value of another leader. `hand.guard_m` and `[control.model] linear_hand_stiffening`
+/// may be missing. The file may also have `control.cancellation_model`, `control.cancellation_step` and
+/// `control.cancellation_friction`. Quantities are in SI units, at the hand.
 ///
 /// Errors: as those of `Document::load` and `Document::read`; `missing` for a key that the tables lack. Allocates.
 Result<control::Cancellation::Params> read_cancellation(const std::filesystem::path& file);

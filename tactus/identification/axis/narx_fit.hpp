@@ -31,8 +31,7 @@ struct NarxStructure {
         field("most_terms", &S::most_terms, between(1, 12), "Largest number of terms that are chosen."),
         field("lag_s", &S::lag_s, units::second, positive, "Time between two lags; 1 to 64 samples."),
         field("cutoff_Hz", &S::cutoff_Hz, units::hertz, positive, "Low-pass on position and command."),
-        field("actuator_gain", &S::actuator_gain, units::none, any_finite,
-              "K_a: force in N for one unit of the command.")};
+        field("actuator_gain", &S::actuator_gain, units::none, any_finite, "K_a: force in N per unit of the command.")};
   }
 };
 

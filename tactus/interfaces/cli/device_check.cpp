@@ -280,7 +280,7 @@ void add_device_check(CLI::App& device, const CLI::App& app, const std::string& 
           ->delimiter(',');
   auto* framing = verb->add_option("--framing", options->bus.framing,
                                    "CAN framing: usb2can, slcan, slcan-fd, socketcan or socketcan-fd");
-  auto* rate = verb->add_option("--bits-per-s", options->bus.bits_per_s, "Bit rate to which the servos are set");
+  auto* rate = verb->add_option("--bits-per-s", options->bus.bits_per_s, "Bit rate that the servos use");
   for (CLI::Option* one : {port, motors, framing, rate}) one->needs(bus);
   bus->needs(port)->needs(motors)->excludes(rig);
   verb->callback([options, bus, rig, &app, &status] {

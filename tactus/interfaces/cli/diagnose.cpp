@@ -41,6 +41,13 @@ Check diagnose(const DiagnoseOptions& options, const std::string& command) {
                                  .figures = {}});
 }
 
+/// How a signal of a bag is written that may have this role: the sensors' forces are wrenches, the motors' are efforts.
+const char* in_a_bag(diagnosis::Role role) {
+  if (diagnosis::is_position(role)) return "TOPIC/JOINT.position";
+  const bool sensor = role == diagnosis::Role::tip_force || role == diagnosis::Role::hand_force;
+  return sensor ? "TOPIC/force.x, force.y or force.z" : "TOPIC/JOINT.effort";
+}
+
 }  // namespace
 
 void add_diagnose(CLI::App& app, const std::string& command, int& status) {
@@ -53,7 +60,7 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
     const auto index = static_cast<std::size_t>(role);
     const std::string words(diagnosis::words_of(role));
     verb->add_option(diagnosis::option_of(role), options->roles.names[index],
-                     "Column of the " + words + "; in a MATLAB file NAME:COLUMN, in a bag TOPIC/JOINT.position")
+                     "Column of the " + words + "; in a MATLAB file NAME:COLUMN, in a bag " + in_a_bag(role))
         ->type_name("NAME");
   }
   for (const diagnosis::Role role : diagnosis::all_roles) {

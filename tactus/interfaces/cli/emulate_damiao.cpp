@@ -173,9 +173,9 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
       ->check(real_between(-12.0, 12.0))
       ->needs(arm);
   const TouchOptionsOf touch =
-      add_touch_options(verb, options->touch, "Level surface this far below the arm's tool, in m, which the tool meets",
-                        "Afterwards a hand taps: it moves the tool down by this depth in m and up again, once in each "
-                        "period in s, from this time in s after the release");
+      add_touch_options(verb, options->touch, "Horizontal surface for the arm's tool, GAP metres below it",
+                        "Afterwards a hand taps: it moves the tool down by DEPTH, in m, and up again, once every "
+                        "PERIOD s, starting SECONDS after the release");
   touch.wall->needs(arm);
   touch.tapped->needs(arm);
   verb.add_option("--tool", options->tool_m,
@@ -183,9 +183,9 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
       ->type_name("Z")
       ->check(real_between(-1.0, 1.0))
       ->needs(arm);
-  verb.add_option("--led", options->led,
-                  "Afterwards a hand moves each joint back and forth by this reach in rad, from this time in s "
-                  "after the release")
+  verb.add_option(
+          "--led", options->led,
+          "Afterwards a hand moves each joint back and forth by REACH, in rad, starting SECONDS after the release")
       ->type_name("REACH,SECONDS")
       ->delimiter(',')
       ->expected(2)

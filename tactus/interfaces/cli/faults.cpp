@@ -96,7 +96,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   faults->add_option("--only", options->only, "Only the fault with this id, as in the rows of --json");
   add_output_options(*faults, options->output, command, "Folder for report.html, results.json and the figure");
   CLI::Option* real_time =
-      faults->add_flag("--realtime", options->real_time, "Repeat some of them in real time on a servo thread");
+      faults->add_flag("--realtime", options->real_time, "Also repeat some of the runs in real time on a servo thread");
   add_servo_options(*faults, options->servo);
   for (const char* name : {"--priority", "--core", "--spin-s"}) faults->get_option(name)->needs(real_time);
   faults->callback([options, name = app.get_name(), &command, &status] {

@@ -234,8 +234,8 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
       identify.add_subcommand("arm", "Identify the dynamics of an arm from recordings of free motion of all joints");
   options->arm.output.own_files = {"model.toml", "arm.urdf", "armatures.toml"};
   verb->add_option("RECORDING", options->files,
-                   "Recordings: .csv, .tsv, .txt, with or without header, or .mat; "
-                   "or the log of a rig (the follower, while it follows)")
+                   "Recordings: .csv, .tsv, .txt, with or without header, or .mat; or a rig's log, of which the "
+                   "follower's data while it follows the leader are used")
       ->required();
   add_arm_urdf_options(*verb, options->urdf, true);
   add_arm_options(*verb, options->arm, command,

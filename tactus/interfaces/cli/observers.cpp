@@ -47,13 +47,15 @@ void add_observer_options(CLI::App& verb, ObserverOptions& options) {
       ->type_name("[[HOST:]PORT]")
       ->expected(0, 1)
       ->group(group);
-  CLI::Option* const ros2 = verb.add_flag("--ros2", options.ros2,
-                                          "Publish to ROS 2 nodes under the names of CRTK (Collaborative Robotics "
-                                          "Toolkit); without --realtime and --site, messages on operator/servo_jp can "
-                                          "move the simulated hand")
-                                ->group(group);
+  CLI::Option* const ros2 =
+      verb.add_flag(
+              "--ros2", options.ros2,
+              "Publish to ROS 2 nodes under the names of CRTK (Collaborative Robotics Toolkit); in a virtual-time run "
+              "(neither --realtime nor --site), messages on operator/servo_jp move the simulated hand")
+          ->group(group);
   verb.add_flag("--requests", options.requests,
-                "Let the live page and ROS 2 nodes set the force gain, ask for a tare and mark episodes")
+                "Let the live page and ROS 2 nodes set the force gain, request a tare (measurement of the "
+                "gravity-compensation error) and mark episodes")
       ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")

@@ -141,9 +141,9 @@ void add_rehearse(CLI::App& app, const std::string& command, int& status) {
       ->expected(2)
       ->check(real_between(0.0, latest_s));
   const TouchOptionsOf touch = add_touch_options(
-      *verb, options->touch, "Level surface this far below the tool of an emulated follower arm, in m, which it meets",
-      "Instead of that a simulated hand taps: it moves the leader's tool down by this depth in m and up again, once in "
-      "each period in s, from this time in s after gravity compensation is on");
+      *verb, options->touch, "Horizontal surface for the tool of an emulated follower arm, GAP metres below it",
+      "Tapping instead of the motion of --led: the simulated hand moves the leader's tool down by DEPTH, in m, and up "
+      "again, once every PERIOD s, starting SECONDS after gravity compensation is on");
   touch.tapped->excludes("--led");
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
   add_log_limit_option(*verb, options->log_limit);

@@ -227,9 +227,9 @@ constexpr const char* supervised_group = "With supervision, in real time";
 
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
   verb.add_option("--device", options.devices,
-                  "Rig file, or one of its pairs, of which the command drives both leader and follower, or with "
-                  "--site one of them. You can also write the name of a device that the program provides, for both "
-                  "sites or for one")
+                  "Rig file, or one of its pairs (RIG.toml:PAIR). The command drives its leader and follower, or only "
+                  "one of them with --site. Instead of a rig file, NAME is a device that the program provides, for "
+                  "both sites or for one (SITE=NAME)")
       ->type_name("[SITE=]NAME|RIG.toml[:PAIR]")
       ->group(supervised_group)
       ->allow_extra_args(false);
@@ -249,8 +249,8 @@ void add_site_options(CLI::App& verb, SupervisedOptions& options) {
   verb.add_flag("--unencrypted", options.unencrypted, "Send plain text, on the loopback of this host only")
       ->group(supervised_group);
   verb.add_flag("--arm", options.arm,
-                "At the master: arm once, after packets of the slave have arrived for the duration of the "
-                "watchdog's timeout")
+                "Master only: arm automatically once, as soon as packets from the slave have arrived for as long as "
+                "the watchdog's timeout")
       ->group(supervised_group);
   add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S")->check(real_between(0.0, 1e6));
 }

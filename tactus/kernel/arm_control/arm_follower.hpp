@@ -84,7 +84,7 @@ class ArmFollower {
                 "leader's handle. The displayed force is multiplied by the same factor, in addition to force_gain."),
           field("gains", &P::gains, "Gains of the drives."),
           field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
-                "Factor on every stiffness in gains. The damping in gains is not scaled."),
+                "Factor on every stiffness of [control.follower.gains]; the damping is not scaled."),
           field("tool_stiffness_limit_N_per_m", &P::tool_stiffness_limit_N_per_m, tactus::units::newton_per_metre,
                 between(0.0, 1e5),
                 "Largest stiffness at the tool, in any direction, that the drives may cause; 0: no limit."),
@@ -93,7 +93,8 @@ class ArmFollower {
                 "Largest damping at the tool, in any direction, that the drives may cause; 0: no limit."),
           field("feed_forward", &P::feed_forward, "Feed-forward torques of the follower, for gravity and friction."),
           field("wanted_motion", &P::wanted_motion,
-                "Feed-forward torque of the motion that the leader commands, only while the follower moves freely."),
+                "Feed-forward torque for the motion that the leader sends. It acts only in free motion, in addition to "
+                "the drives' own control law."),
           field("torque", &P::torque, "Source of the external torque that is displayed."),
           field("observer", &P::observer, "The observer of external torque.")};
     }

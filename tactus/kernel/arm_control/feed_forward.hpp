@@ -25,11 +25,12 @@ class FeedForward {
     double friction_share = 1.0;
     double friction_velocity_rad_per_s = 0.3;
     static constexpr auto fields() {
-      return List{
-          field("friction_share", &Params::friction_share, units::none, between(0.0, 1.0),
-                "Share of the joints' friction that the motors compensate."),
-          field("friction_velocity_rad_per_s", &Params::friction_velocity_rad_per_s, arm::units::radian_per_second,
-                positive_up_to(10.0), "Velocity v1 in the compensation of Coulomb friction, friction * tanh(v / v1).")};
+      return List{field("friction_share", &Params::friction_share, units::none, between(0.0, 1.0),
+                        "Share of the joints' friction that the motors compensate."),
+                  field("friction_velocity_rad_per_s", &Params::friction_velocity_rad_per_s,
+                        arm::units::radian_per_second, positive_up_to(10.0),
+                        "Velocity v1 of the transition from one direction to the other: Coulomb friction F_c is "
+                        "compensated as F_c tanh(v / v1).")};
     }
   };
 

@@ -13,9 +13,10 @@ namespace tactus::arm_control {
 struct AvoidanceGain {
   double alpha_s_per_rad = 0.0;
   static constexpr auto fields() {
-    return List{
-        field("alpha_s_per_rad", &AvoidanceGain::alpha_s_per_rad, Unit{"s/rad", "_s_per_rad"}, between(0.0, 1000.0),
-              "Inverse of the speed at which a displayed torque in the direction of motion has decreased to zero.")};
+    return List{field("alpha_s_per_rad", &AvoidanceGain::alpha_s_per_rad, Unit{"s/rad", "_s_per_rad"},
+                      between(0.0, 1000.0),
+                      "alpha: a displayed torque in the direction of motion is multiplied by 1 - alpha times the "
+                      "joint's speed. It is zero at the speed 1/alpha and reversed above it.")};
   }
 };
 

@@ -57,11 +57,13 @@ class FourChannel {
     double alpha = 1.0;
     double beta = 0.8;
     static constexpr auto fields() {
-      return List{field("joints", &Params::joints, "Gains of each joint, of both arms."),
-                  field("alpha", &Params::alpha, tactus::units::none, positive_up_to(100.0),
-                        "Weight of the leader's inertia in the factors by which both arms scale force_share."),
-                  field("beta", &Params::beta, tactus::units::none, positive_up_to(100.0),
-                        "Weight of the follower's inertia in the factors by which both arms scale force_share.")};
+      return List{
+          field("joints", &Params::joints, "Gains of each joint, of both arms."),
+          field("alpha", &Params::alpha, tactus::units::none, positive_up_to(100.0),
+                "Weight of the leader's joint inertia J_l in the factors by which both arms multiply force_share: "
+                "alpha J_l / (alpha J_l + beta J_f) at the leader, J_f / (alpha J_l + beta J_f) at the follower."),
+          field("beta", &Params::beta, tactus::units::none, positive_up_to(100.0),
+                "Weight of the follower's joint inertia J_f in these factors.")};
     }
   };
   enum class Side { leader, follower };

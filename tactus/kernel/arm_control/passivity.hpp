@@ -41,8 +41,9 @@ struct PassivityParams {
     using P = PassivityParams;
     return List{
         field("port", &P::port,
-              "Port at which the energy that leaves the link must not exceed the energy that has entered it. joints: "
-              "each joint separately. tool: all joints together, by the power at the tool."),
+              "Where the energy of the link is counted. No more energy may leave the link at one site than has entered "
+              "it at the other. none: nowhere, without dampers. joints: at each joint separately. tool: at all joints "
+              "together, by the power at the tool."),
         field("joint_limits", &P::joint_limits, "Only with the port joints: the limits of each joint."),
         field("tool_limit_N_s_per_m", &P::tool_limit_N_s_per_m, tactus::units::newton_second_per_metre,
               between(0.0, 1000.0),

@@ -34,7 +34,8 @@ class Tare {
     double most_share = 0.3;
     static constexpr auto fields() {
       return List{field("cycles", &Params::cycles, between(0, 20),
-                        "Cycles of motion that are averaged, after one in which the motion ramps in; 0: no tare."),
+                        "Cycles of motion that are averaged, after one in which the motion ramps in. 0: no tare with "
+                        "simulated taps; on a rig two cycles are averaged."),
                   field("amplitude_rad", &Params::amplitude_rad, arm::units::radian, positive_up_to(0.1),
                         "Amplitude of the motion of each joint; in m for a sliding joint."),
                   field("frequency_Hz", &Params::frequency_Hz, tactus::units::hertz, between(0.1, 5.0),

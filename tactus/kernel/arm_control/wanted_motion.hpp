@@ -33,9 +33,9 @@ class WantedMotion {
   struct Params {
     double cutoff_Hz = 0.0;
     static constexpr auto fields() {
-      return List{field(
-          "cutoff_Hz", &Params::cutoff_Hz, tactus::units::hertz, between(0.0, 50.0),
-          "-3 dB frequency of the low-pass on the wanted velocity, at most half the sample rate; 0: no feed-forward.")};
+      return List{field("cutoff_Hz", &Params::cutoff_Hz, tactus::units::hertz, between(0.0, 50.0),
+                        "-3 dB frequency of the low-pass on the velocity that the leader sends, at most half the "
+                        "sample rate; 0: no feed-forward.")};
     }
   };
   /// What it assumes of the follower.

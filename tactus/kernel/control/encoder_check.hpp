@@ -49,8 +49,8 @@ class EncoderCheck {
                 "If the motor's force stays at least this far from its value at the last count for frozen_after_s, and "
                 "the encoder's reading does not change, the encoder is frozen."),
           field("unbalanced_force_N", &Params::unbalanced_force_N, units::newton, positive_up_to(200.0),
-                "Only with a force sensor. If the motor's force and the sensor's force differ by at least this much "
-                "for frozen_after_s and the reading does not change, the encoder is frozen."),
+                "Only with a force sensor at the tip or the hand. If the motor's force and the sensor's force differ "
+                "by at least this much for frozen_after_s and the reading does not change, the encoder is frozen."),
           field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
                 "Time for which the reading must stay unchanged, with frozen_force_N or unbalanced_force_N exceeded, "
                 "before the encoder counts as frozen.")};

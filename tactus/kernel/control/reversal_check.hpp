@@ -31,9 +31,9 @@ class ReversalCheck {
     double lasting_s = 0.01;
     static constexpr auto fields() {
       return List{field("force_N", &Params::force_N, units::newton, positive_up_to(200.0),
-                        "Net force from which the check acts: motor force minus the resistance that a sensor measures. "
-                        "While this force opposes the motion, the device must not gain speed. Must be greater than "
-                        "friction and the error of the sensor."),
+                        "The check takes effect when the net force (motor force minus the resistance that a sensor "
+                        "measures) is at least this. While the net force opposes the motion, the device must not gain "
+                        "speed. Must be greater than friction plus the error of the sensor."),
                   field("gained_m_per_s", &Params::gained_m_per_s, units::metre_per_second, positive_up_to(100.0),
                         "Gain of speed against the net force at which the gate reports a fault."),
                   field("lasting_s", &Params::lasting_s, units::second, positive_up_to(1.0),

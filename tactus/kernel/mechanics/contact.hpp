@@ -91,7 +91,7 @@ class HuntCrossleyContact {
                 "Growth of the force with depth: 1 flat on flat, 1.5 sphere on flat (Hertz), more for conforming or "
                 "soft bodies."),
           field("dissipation_s_per_m", &Params::dissipation_s_per_m, units::second_per_metre, non_negative,
-                "Relative growth of the force with the rate of depth.")};
+                "c: the force of the spring is multiplied by 1 + c times the rate of penetration, at least by 0.")};
     }
   };
   using Input = Penetration;

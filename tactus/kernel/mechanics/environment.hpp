@@ -44,7 +44,8 @@ class Environment {
           field("exponent", &Params::exponent, units::none, between(1.0, 2.5),
                 "Exponent of the force as a function of depth (Hunt-Crossley only)."),
           field("dissipation_s_per_m", &Params::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
-                "Relative increase of the force per rate of penetration (Hunt-Crossley only).")};
+                "c: the force of the spring is multiplied by 1 + c times the rate of penetration, at least by 0 "
+                "(Hunt-Crossley only).")};
     }
   };
   /// The tip as the wall sees it.

@@ -39,13 +39,13 @@ class KalmanPredictor {
       return List{field("kinematics", &Params::kinematics,
                         "Motion model: constant velocity or constant acceleration, apart from the process noise."),
                   field("process_noise", &Params::process_noise, units::none, positive,
-                        "q: standard deviation of the change of velocity (signal/s) or acceleration (signal/s^2) "
-                        "within a second."),
+                        "q: standard deviation of the change, within one second, of the quantity that kinematics "
+                        "names: velocity (signal/s) or acceleration (signal/s^2)."),
                   field("measurement_noise", &Params::measurement_noise, units::none, positive,
                         "r: standard deviation of a sample, in the unit of the signal; for an encoder its step divided "
                         "by the root of 12."),
                   field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),
-                        "Time of the prediction ahead of the newest sample.")};
+                        "Time after the newest sample for which the signal is predicted.")};
     }
   };
   using Input = double;

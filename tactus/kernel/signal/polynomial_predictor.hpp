@@ -29,7 +29,7 @@ class PolynomialPredictor {
     double horizon_s = 0.0036;
     static constexpr auto fields() {
       return List{field("samples", &Params::samples, between(1, 128),
-                        "Number of newest samples in the fit; more than the degree."),
+                        "Number of newest samples in the fit; it must exceed the degree."),
                   field("degree", &Params::degree, between(0, 3), "Degree of the polynomial; 0 is the mean."),
                   field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),
                         "Time after the newest sample at which the polynomial is evaluated.")};

@@ -33,12 +33,12 @@ class Predictor {
     PolynomialPredictor::Params polynomial{};
     KalmanPredictor::Params kalman{};
     static constexpr auto fields() {
-      return List{
-          field("kind", &Params::kind, "Method of prediction: blocks, polynomial or kalman."),
-          field("blocks", &Params::blocks, between(0, 4), "Number of blocks in series (blocks); 0: no prediction."),
-          field("block", &Params::block, "Parameters of each block."),
-          field("polynomial", &Params::polynomial, "Extrapolation of a least-squares polynomial."),
-          field("kalman", &Params::kalman, "Kalman filter of the signal's kinematics.")};
+      return List{field("kind", &Params::kind, "Method of prediction: blocks, polynomial or kalman."),
+                  field("blocks", &Params::blocks, between(0, 4),
+                        "Only with the kind blocks: number of blocks in series; 0: no prediction."),
+                  field("block", &Params::block, "Parameters of each block."),
+                  field("polynomial", &Params::polynomial, "Extrapolation of a least-squares polynomial."),
+                  field("kalman", &Params::kalman, "Kalman filter of the signal's kinematics.")};
     }
     /// Predicts nothing.
     static Params none() { return {.blocks = 0}; }

@@ -30,8 +30,7 @@ struct ArmJoint {
     using J = ArmJoint;
     namespace u = arm::units;
     return List{field("start_rad", &J::start_rad, u::radian, any_finite,
-                      "Position at the start of a tap. A follower that is commanded joint by joint starts at the "
-                      "leader's position."),
+                      "Initial position. A follower that is commanded joint by joint starts at the leader's position."),
                 field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
                       "Rotor inertia, referred to the joint's side of the gear."),
                 field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
@@ -53,9 +52,12 @@ struct ToolPoint {
   double y_m = 0.0;
   double z_m = 0.0;
   static constexpr auto fields() {
-    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Position along the x axis of the last link."),
-                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Position along the y axis of the last link."),
-                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Position along the z axis of the last link.")};
+    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite,
+                      "Position of this point along the x axis of the last link's frame."),
+                field("y_m", &ToolPoint::y_m, units::metre, any_finite,
+                      "Position of this point along the y axis of the last link's frame."),
+                field("z_m", &ToolPoint::z_m, units::metre, any_finite,
+                      "Position of this point along the z axis of the last link's frame.")};
   }
 };
 
@@ -110,12 +112,12 @@ struct ArmControlParams : arm_control::ArmLeader::Params {
   arm_control::ArmFollower::Params follower = {};
   arm_control::Tare::Params tare = {};
   static constexpr auto fields() {
-    return joined(arm_control::ArmLeader::Params::fields(),
-                  List{field("follower", &ArmControlParams::follower, "The follower's site."),
-                       field("tare", &ArmControlParams::tare,
-                             "Measurement of the error of both arms' gravity compensation. With simulated taps it "
-                             "takes place before the operator takes the leader. On a rig the operator requests it with "
-                             "the command tare; it then averages two cycles if cycles is 0.")});
+    return joined(
+        arm_control::ArmLeader::Params::fields(),
+        List{field("follower", &ArmControlParams::follower, "The follower's site."),
+             field("tare", &ArmControlParams::tare,
+                   "Measurement of the errors of both arms' gravity compensation. With simulated taps it takes place "
+                   "before the operator takes the leader. On a rig the operator requests it with the command tare.")});
   }
 };
 

@@ -14,11 +14,11 @@ struct ServoParams {
   double rate_Hz = 5000.0;
   double computation_delay_s = 20e-6;
   static constexpr auto fields() {
-    return List{field("rate_Hz", &ServoParams::rate_Hz, units::hertz, between(500.0, 20000.0),
-                      "Control cycles per second (paper A: 5000)."),
-                field("computation_delay_s", &ServoParams::computation_delay_s, units::second, between(0.0, 0.002),
-                      "Time from a sample to the change of the command that results from it, rounded to whole plant "
-                      "steps; less than a control cycle.")};
+    return List{
+        field("rate_Hz", &ServoParams::rate_Hz, units::hertz, between(500.0, 20000.0), "Control cycles per second."),
+        field("computation_delay_s", &ServoParams::computation_delay_s, units::second, between(0.0, 0.002),
+              "Time from a sample to the change of the command that results from it, rounded to whole plant "
+              "steps; less than a control cycle.")};
   }
 };
 

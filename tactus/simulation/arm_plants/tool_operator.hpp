@@ -47,8 +47,7 @@ class ToolOperator {
       return List{
           field("hand", &Params::hand, "The passive impedance of hand and arm at the tool."),
           field("correction_gain_per_s", &Params::correction_gain_per_s, units::per_second, between(0.0, 8.0),
-                "Speed with which the operator slowly corrects the tool's position, per metre of error; 0: no "
-                "correction."),
+                "Speed of the operator's slow correction per metre of error of the tool's position; 0: no correction."),
           field("correction_bandwidth_Hz", &Params::correction_bandwidth_Hz, units::hertz, between(0.1, 20.0),
                 "Corner frequency of the first-order low-pass on the position error that the operator corrects."),
           field("reaction_time_s", &Params::reaction_time_s, units::second, between(0.0, 0.4),

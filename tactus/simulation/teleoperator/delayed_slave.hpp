@@ -26,7 +26,7 @@ struct DelayedSlaveParams {
     using P = DelayedSlaveParams;
     return List{
         field("controller_gain_N_per_m", &P::controller_gain_N_per_m, units::newton_per_metre, positive,
-              "K_c: command per metre of measured error."),
+              "K_c: command to the actuator per metre of measured position error."),
         field("actuator_gain", &P::actuator_gain, units::none, positive_up_to(1e6),
               "K_a: force in N per unit of the command."),
         field("actuator_delay_s", &P::actuator_delay_s, units::second, between(0.0, 1.0), "T1a: transport delay."),
@@ -34,7 +34,8 @@ struct DelayedSlaveParams {
         field("mass_kg", &P::mass_kg, units::kilogram, positive, "M_s: moving mass."),
         field("viscous_damping_N_s_per_m", &P::viscous_damping_N_s_per_m, units::newton_second_per_metre, non_negative,
               "h_e: viscous damping."),
-        field("sensor_gain", &P::sensor_gain, units::none, positive_up_to(1e6), "K_s: measured position per metre."),
+        field("sensor_gain", &P::sensor_gain, units::none, positive_up_to(1e6),
+              "K_s: measured position per metre of true position."),
         field("sensor_delay_s", &P::sensor_delay_s, units::second, between(0.0, 1.0), "T1s: transport delay."),
         field("sensor_lag_s", &P::sensor_lag_s, units::second, between(1e-4, 1.0), "T2s: first-order lag.")};
   }

@@ -39,16 +39,20 @@ struct FrictionFunction {
   double linear = 0.1;
   double quadratic = 0.00045;
   static constexpr auto fields() {
-    return List{
-        field("law", &FrictionFunction::law, "Friction law: none, sigmoid, smooth-coulomb or dead-band-coulomb."),
-        field("force_N", &FrictionFunction::force_N, units::newton, non_negative,
-              "Coulomb friction, or the factor of the sigmoid (the paper's h_e)."),
-        field("offset_N", &FrictionFunction::offset_N, units::newton, any_finite,
-              "Constant force, independent of the motion."),
-        field("velocity_scale_m_per_s", &FrictionFunction::velocity_scale_m_per_s, units::metre_per_second, positive,
-              "Velocity scale of the law: its argument is r = velocity / velocity_scale_m_per_s."),
-        field("linear", &FrictionFunction::linear, units::none, non_negative, "Linear share of the sigmoid."),
-        field("quadratic", &FrictionFunction::quadratic, units::none, non_negative, "Quadratic share of the sigmoid.")};
+    return List{field("law", &FrictionFunction::law,
+                      "Friction law, with r as in velocity_scale_m_per_s. sigmoid: force_N (1 / (1 + exp(-r)) - 1/2 + "
+                      "linear r + quadratic abs(r) r). smooth-coulomb: force_N tanh(r). dead-band-coulomb: force_N "
+                      "sign(r) if abs(r) is at least 1, otherwise 0. Each law except none adds offset_N."),
+                field("force_N", &FrictionFunction::force_N, units::newton, non_negative,
+                      "Coulomb friction; with the sigmoid its factor (h_e in the paper)."),
+                field("offset_N", &FrictionFunction::offset_N, units::newton, any_finite,
+                      "Constant force, independent of the motion."),
+                field("velocity_scale_m_per_s", &FrictionFunction::velocity_scale_m_per_s, units::metre_per_second,
+                      positive, "Velocity scale of the law: its argument is r = velocity / velocity_scale_m_per_s."),
+                field("linear", &FrictionFunction::linear, units::none, non_negative,
+                      "Only with the sigmoid: coefficient of its linear term."),
+                field("quadratic", &FrictionFunction::quadratic, units::none, non_negative,
+                      "Only with the sigmoid: coefficient of its quadratic term.")};
   }
   /// The force in N that moving at `velocity_m_per_s` takes. Real-time safe.
   [[nodiscard]] double operator()(double velocity_m_per_s) const noexcept;
@@ -94,17 +98,17 @@ class InverseModelEstimator {
     static constexpr auto fields() {
       return List{
           field("form", &Params::form,
-                "Form of the linear model. mass-damping: the keys that are marked (mass-damping). rational: the "
-                "transfer function in plant."),
+                "Form of the linear model. mass-damping uses the keys marked (mass-damping); rational uses the "
+                "transfer function in the section plant."),
           field("mass_kg", &Params::mass_kg, units::kilogram, non_negative, "Moving mass M (mass-damping)."),
           field("viscous_damping_N_s_per_m", &Params::viscous_damping_N_s_per_m, units::newton_second_per_metre,
                 non_negative, "Viscous damping h (mass-damping)."),
           field("plant", &Params::plant, "Transfer function from actuator force to position, N(s)/D(s) (rational)."),
           field("friction", &Params::friction, "Friction in addition to the linear model."),
           field("actuator_gain", &Params::actuator_gain, units::none, any_finite,
-                "K_a: force in N for one unit of the command; not 0."),
+                "K_a: force in N per unit of the command; not 0."),
           field("sensor_gain", &Params::sensor_gain, units::none, any_finite,
-                "K_s: measured position for one metre; not 0."),
+                "K_s: measured position per metre of true position; not 0."),
           field("force_filter_s", &Params::force_filter_s, units::second, non_negative,
                 "T_f: time constant of the low-pass on command and force; 0: no filter."),
           field("derivative_filter_s", &Params::derivative_filter_s, units::second, non_negative,

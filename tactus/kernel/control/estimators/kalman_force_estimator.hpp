@@ -30,14 +30,14 @@ class KalmanForceEstimator {
     double model_noise_N = 1e-3;
     double position_noise_m = 3e-6;
     static constexpr auto fields() {
-      return List{
-          field("model", &Params::model, "The nominal slave."),
-          field("force_walk_N", &Params::force_walk_N, units::newton, positive,
-                "q: standard deviation of the change of the force within a second."),
-          field("model_noise_N", &Params::model_noise_N, units::newton, positive,
-                "w: error of the model as white noise of the force; standard deviation of its mean over one second."),
-          field("position_noise_m", &Params::position_noise_m, units::metre, positive,
-                "r: standard deviation of the noise of the measured position.")};
+      return List{field("model", &Params::model, "The nominal slave."),
+                  field("force_walk_N", &Params::force_walk_N, units::newton, positive,
+                        "q: standard deviation of the change of the force within one second."),
+                  field("model_noise_N", &Params::model_noise_N, units::newton, positive,
+                        "w: error of the model, treated as white noise of the force. The value is the standard "
+                        "deviation of the mean of this noise over one second."),
+                  field("position_noise_m", &Params::position_noise_m, units::metre, positive,
+                        "r: standard deviation of the noise of the measured position.")};
     }
   };
   using Input = SlaveMotionSample;

@@ -138,7 +138,7 @@ class NarxForceEstimator {
     NarxTerms terms{};
     static constexpr auto fields() {
       return List{field("actuator_gain", &Params::actuator_gain, units::none, any_finite,
-                        "K_a: force in N for one unit of the command."),
+                        "K_a: force in N per unit of the command."),
                   field("scales", &Params::scales, "Filters, lags and scales."),
                   field("terms", &Params::terms, "The polynomial.")};
     }

@@ -18,7 +18,7 @@ struct SlaveModel {
                       units::newton_second_per_metre, non_negative, "Viscous damping h."),
                 field("friction", &SlaveModel::friction, "Friction in addition to the viscous part."),
                 field("actuator_gain", &SlaveModel::actuator_gain, units::none, any_finite,
-                      "K_a: force in N for one unit of the command.")};
+                      "K_a: force in N per unit of the command.")};
   }
 };
 

@@ -40,15 +40,15 @@ struct ArmContestTask {
         field("seed", &T::seed, non_negative, "Seed from which the taps are drawn."),
         field("pose", &T::pose, between(0, 1000), "Initial pose of both arms, as in `arm-tapping`."),
         field("direction", &T::direction,
-              "Direction in which the operator taps: down, or along the x or y axis of the base."),
+              "Direction in which the operator moves to the surface: down, or along the x or y axis of the base."),
         field("model_error", &T::model_error, units::none, between(0.0, 0.5),
               "Largest error of the model of induced motion, as a share, as in `arm-tapping`."),
-        field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0), "Smallest force gain of the search."),
-        field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0),
-              "Largest force gain of the search."),
+        field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0),
+              "Lower end of the search for the largest force gain. The search starts at a gain of 1."),
+        field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0), "Upper end of the search."),
         field("bare", &T::bare,
-              "File that removes the recommended settings from a pair, for all methods whose name does not start with "
-              "`recommended`.")};
+              "File whose keys remove the recommended settings from a pair. It applies to all methods whose name does "
+              "not start with `recommended`. A relative path starts at the folder of this file.")};
   }
 };
 
@@ -63,7 +63,9 @@ struct ArmContestPair {
                 field("file", &P::file,
                       "Experiment file of the kind arm-tapping with the recommended settings. A relative path starts "
                       "at the folder of this file."),
-                field("with", &P::with, "File whose keys replace those of that experiment; empty: none.")};
+                field("with", &P::with,
+                      "File whose keys replace those of the experiment in `file`; empty: none. A relative path starts "
+                      "at the folder of this file.")};
   }
 };
 
@@ -74,7 +76,8 @@ struct ArmContestHand {
   static constexpr auto fields() {
     return List{field("name", &ArmContestHand::name, "Name of the hand in the table; empty: this hand does not exist."),
                 field("with", &ArmContestHand::with,
-                      "File that describes the hand; empty: the hand of each pair's experiment.")};
+                      "File that describes the hand; empty: the hand of each pair's experiment. A relative path starts "
+                      "at the folder of this file.")};
   }
 };
 
@@ -101,9 +104,10 @@ struct ArmContestParams {
   ArmContestHands hands;
   static constexpr auto fields() {
     using P = ArmContestParams;
-    return List{
-        field("task", &P::task, "The taps, and the search for the largest force gain at which all taps settle."),
-        field("pairs", &P::pairs, "The arms."), field("hands", &P::hands, "The hands that hold the leader.")};
+    return List{field("task", &P::task,
+                      "The taps and the search. For each method, pair of arms and hand, the contest determines the "
+                      "largest force gain at which at least 95 % of the taps settle."),
+                field("pairs", &P::pairs, "The arms."), field("hands", &P::hands, "The hands that hold the leader.")};
   }
 };
 

@@ -44,7 +44,8 @@ struct ArmWallParams {
                 field("exponent", &W::exponent, units::none, between(1.0, 2.5),
                       "Exponent of the force as a function of depth (Hunt-Crossley only)."),
                 field("dissipation_s_per_m", &W::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
-                      "Relative increase of the force per rate of penetration (Hunt-Crossley only).")};
+                      "c: the force of the spring is multiplied by 1 + c times the rate of penetration, at least by 0 "
+                      "(Hunt-Crossley only).")};
   }
   /// The law along the depth, its surface at 0.
   [[nodiscard]] mechanics::Environment::Params environment() const noexcept {
@@ -143,32 +144,33 @@ struct ArmTappingTask {
   ArmModelErrors errors;
   static constexpr auto fields() {
     using T = ArmTappingTask;
-    return List{field("kind", &T::kind, "Kind of the experiment."),
-                field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
-                field("seed", &T::seed, non_negative, "Seed from which the ensemble is drawn."),
-                field("pose", &T::pose, between(0, 1000),
-                      "Initial pose of both arms. 0: start_rad of each joint. Other numbers: seed of a random pose "
-                      "within 0.6 rad of start_rad. Its distance from a singular pose is at least three quarters of "
-                      "the distance of the start_rad pose. With the coupling tool only the follower's pose is random."),
-                field("direction", &T::direction,
-                      "Direction in which the operator taps: down, or along the x or y axis of the base."),
-                field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
-                      "Slowest approach: intended speed at the surface."),
-                field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
-                      "Fastest approach."),
-                field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
-                      "Smallest depth: how far beyond the surface the operator aims."),
-                field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
-                field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
-                      "Time for which a tap is observed from the first touch, while the operator keeps pressing."),
-                field("hold_s", &T::hold_s, units::second, between(1.0, 60.0),
-                      "Time for which the operator holds still in the air, to measure the force on the hand and the "
-                      "drift at rest."),
-                field("model_error", &T::model_error, units::none, between(0.0, 0.5),
-                      "Largest error of the model of induced motion, as a share. It applies to mass and inertia of "
-                      "each link, armature and friction of each joint, and mass, stiffness and damping of the hand. "
-                      "Each tap draws each error uniformly from minus to plus this share."),
-                field("errors", &T::errors, "Errors of the sites' other model parameters, drawn for each tap.")};
+    return List{
+        field("kind", &T::kind, "Kind of the experiment."),
+        field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
+        field("seed", &T::seed, non_negative, "Seed from which the ensemble is drawn."),
+        field("pose", &T::pose, between(0, 1000),
+              "Initial pose of both arms. 0: start_rad of each joint. Other numbers: seed of a random pose within 0.6 "
+              "rad of start_rad and at least three quarters as far from a singular pose as start_rad. With the "
+              "coupling tool only the follower's pose is random."),
+        field("direction", &T::direction,
+              "Direction in which the operator moves to the surface: down, or along the x or y axis of the base."),
+        field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Slowest approach: intended speed at the surface."),
+        field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Fastest approach."),
+        field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
+              "Smallest depth: how far beyond the surface the operator aims."),
+        field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
+        field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
+              "Time for which a tap is observed from the first touch, while the operator keeps pressing."),
+        field("hold_s", &T::hold_s, units::second, between(1.0, 60.0),
+              "Time for which the operator holds still in the air, to measure the force on the hand and the "
+              "drift at rest."),
+        field("model_error", &T::model_error, units::none, between(0.0, 0.5),
+              "Largest error of the model of induced motion, as a share. It applies to mass and inertia of "
+              "each link, armature and friction of each joint, and mass, stiffness and damping of the hand. "
+              "Each tap draws each error uniformly from minus to plus this share."),
+        field("errors", &T::errors, "Errors of the sites' other model parameters, drawn for each tap.")};
   }
 };
 

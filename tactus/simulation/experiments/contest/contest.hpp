@@ -25,14 +25,15 @@ struct GainSearch : TapSeries {
   double lowest_gain = 0.25;
   double highest_gain = 32.0;
   static constexpr auto fields() {
-    return joined(List{field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
-                             "A second force limit, greater than `control.force_limit_N`, so that the displayed force "
-                             "saturates less."),
-                       field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
-                             "Smallest force gain of the search."),
-                       field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0),
-                             "Largest force gain of the search.")},
-                  TapSeries::fields());
+    return joined(
+        List{field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
+                   "A second limit of the displayed force. Gain limits are determined at `control.force_limit_N` and "
+                   "at this one, which is meant to be greater, so that the displayed force saturates less."),
+             field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
+                   "Lower end of the search for the largest force gain. The search starts at a gain of 1."),
+             field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0),
+                   "Upper end of the search.")},
+        TapSeries::fields());
   }
 };
 
@@ -51,7 +52,9 @@ struct ContestParams : simulation::Teleoperator::Params {
   static constexpr auto fields() {
     return joined(simulation::Teleoperator::Params::fields(),
                   List{field("task", &ContestParams::task,
-                             "The taps, and the search for the largest force gain at which all taps settle.")});
+                             "The taps and the search. For each method of keeping contact stable, the contest "
+                             "determines the largest force gain at which at least 95 % of the taps settle, half of "
+                             "them within 0.1 s plus two round trips of the link.")});
   }
 };
 

@@ -37,8 +37,8 @@ struct FaultsTask {
                       "A run counts as diverged if the master's motor delivered more energy than this."),
                 field("bounds", &FaultsTask::bounds, "Limits of the effects of a fault on people."),
                 field("real_time_seeds", &FaultsTask::real_time_seeds, between(1, 1000),
-                      "Number of runs of each fault in real time, if requested. They repeat the first runs in virtual "
-                      "time, but no interruption of the link is longer than one second.")};
+                      "Number of runs of each fault in real time, with --realtime. These runs repeat the first of the "
+                      "virtual-time runs; no interruption of the link is longer than one second.")};
   }
 };
 

@@ -35,7 +35,8 @@ struct ForceEstimatorsTask {
     using Task = ForceEstimatorsTask;
     return List{field("kind", &Task::kind, "Kind of the experiment."),
                 field("free_amplitude_m", &Task::free_amplitude_m, units::metre, between(1e-4, 0.5),
-                      "Amplitude of the motion back and forth, and its smallest distance from the wall."),
+                      "Amplitude of the motion back and forth. The smallest distance of this motion from the wall has "
+                      "the same value."),
                 field("free_frequency_Hz", &Task::free_frequency_Hz, units::hertz, between(0.1, 20.0),
                       "Frequency of this motion."),
                 field("press_depth_m", &Task::press_depth_m, units::metre, between(1e-4, 0.5),

@@ -26,7 +26,7 @@ struct HydraulicChirpTask {
   static constexpr auto fields() {
     using P = HydraulicChirpTask;
     return List{
-        field("kind", &P::kind, "The experiment."),
+        field("kind", &P::kind, "Kind of the experiment."),
         field("duration_s", &P::duration_s, units::second, between(2.0, 200.0), "Length of the chirp."),
         field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 50.0),
               "First frequency of the chirp."),

@@ -29,14 +29,14 @@ struct HydraulicRigidContactTask {
   double training_amplitude_m = 0.05;
   static constexpr auto fields() {
     using P = HydraulicRigidContactTask;
-    return List{field("kind", &P::kind, "The experiment."),
+    return List{field("kind", &P::kind, "Kind of the experiment."),
                 field("first_press_m", &P::first_press_m, units::metre, between(1e-3, 0.1),
-                      "Distance beyond the end stop at which the operator aims the first time."),
+                      "Distance beyond the end stop to which the operator aims in the first press."),
                 field("second_press_m", &P::second_press_m, units::metre, between(1e-3, 0.1),
-                      "Distance beyond the end stop at which the operator aims the second time."),
+                      "Distance beyond the end stop to which the operator aims in the second press."),
                 field("force_division", &P::force_division, units::none, between(1.0, 1e5),
                       "Force at the slave divided by force at the master."),
-                field("blocks", &P::blocks, between(1, 4), "Prediction blocks of the variant with prediction."),
+                field("blocks", &P::blocks, between(1, 4), "Number of prediction blocks in the runs with prediction."),
                 field("delay_s", &P::delay_s, units::second, between(0.0, 0.1), "Delay of the link in each direction."),
                 field("pressure_filter_Hz", &P::pressure_filter_Hz, units::hertz, positive,
                       "Second-order low-pass on the force from the pressure sensors."),

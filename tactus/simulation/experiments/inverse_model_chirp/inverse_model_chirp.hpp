@@ -28,7 +28,7 @@ struct InverseModelChirpTask {
   static constexpr auto fields() {
     using P = InverseModelChirpTask;
     return List{
-        field("kind", &P::kind, "The experiment."),
+        field("kind", &P::kind, "Kind of the experiment."),
         field("duration_s", &P::duration_s, units::second, between(1.0, 200.0), "Length of each trajectory."),
         field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 100.0),
               "First frequency of the trajectory chirp."),
@@ -38,7 +38,7 @@ struct InverseModelChirpTask {
         field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(500.0, 20000.0),
               "Sample rate of the estimators."),
         field("fit_start_frequency_Hz", &P::fit_start_frequency_Hz, units::hertz, between(1.0, 200.0),
-              "Initial frequency of the poles in the fit of the fourth-order model.")};
+              "Initial frequency of the poles of the fourth-order model that the experiment fits.")};
   }
 };
 
@@ -51,8 +51,8 @@ struct InverseModelChirpParams {
     return List{field("task", &P::task, "Trajectories and sampling."),
                 field("slave", &P::slave, "The simulated slave."),
                 field("estimator", &P::estimator,
-                      "Parameters of the inverse model. The experiment itself sets the kind of prediction, the number "
-                      "of blocks, their time constant and declared_delay_s; the values in the file have no effect.")};
+                      "Parameters of the inverse model. The experiment itself sets prediction.kind, prediction.blocks, "
+                      "prediction.block.time_constant_s and declared_delay_s; values in the file have no effect.")};
   }
 };
 

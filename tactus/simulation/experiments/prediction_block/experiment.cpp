@@ -30,7 +30,7 @@ struct PredictionBlockTask {
   double tolerance = 0.1;
   static constexpr auto fields() {
     using P = PredictionBlockTask;
-    return List{field("kind", &P::kind, "The experiment."),
+    return List{field("kind", &P::kind, "Kind of the experiment."),
                 field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(100.0, 1e5),
                       "Rate at which the predictors run."),
                 field("lag_s", &P::lag_s, units::second, between(1e-3, 1.0),
