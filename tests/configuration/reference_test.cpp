@@ -177,6 +177,8 @@ TEST(Reference, WhatAnotherPageSaysIsLeftToIt) {
 
 Same as in [`soft`](soft.md), with the same defaults: `[slave.velocity_filter]`, `[control]`, `[task]`.
 
+## Keys at the top of the file
+
 | Key | Unit | Bounds | Default | Meaning |
 |---|---|---|---|---|
 | `stay_s` | s | > 0 | `1.0` | How long it stays. |

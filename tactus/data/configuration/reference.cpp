@@ -201,6 +201,7 @@ std::string reference_markdown(std::span<const Binding> bindings, std::string_vi
   if (!equal_roots.empty()) {
     page += concat(
         {"\nSame as in [`", other.kind, "`](", other.kind, ".md), with the same defaults: ", equal_roots, ".\n"});
+    if (!own.front().rows.empty()) page += "\n## Keys at the top of the file\n";
   }
   return page + tables;
 }
