@@ -46,7 +46,7 @@ TEST(SiteWords, SetAForceGainWithinWhatIsAllowedAndARefusalStatesBoth) {
   for (const char* words : {"set force_gain 2", "set force_gain -0.1"}) {
     const std::string text = said(words, within_the_file);
     EXPECT_NE(text.find("0 to 0.5"), std::string::npos) << text;
-    EXPECT_NE(text.find("supervision.force_gain.limit"), std::string::npos) << text;
+    EXPECT_NE(text.find("force_gain.limit"), std::string::npos) << text;
   }
   EXPECT_NE(said("set force_gain 2", within_the_file).find("2 is refused"), std::string::npos);
   EXPECT_EQ(said("set force_gain 2", {.most_force_gain = 4.0, .file_force_gain = 0.5}), "taken");

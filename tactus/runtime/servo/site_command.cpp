@@ -59,8 +59,9 @@ Result<double> parse_force_gain(std::string_view rest, const Settable& settable)
   return refused(ErrorCode::out_of_bounds, "force_gain",
                  rounded_number(gain) + " is refused: it may be 0 to " + rounded_number(*settable.most_force_gain) +
                      (*settable.most_force_gain > settable.file_force_gain
-                          ? ", supervision.force_gain.limit"
-                          : ", that of the file; a larger one needs supervision.force_gain.limit in the file"));
+                          ? ", the key force_gain.limit of its supervision"
+                          : ", the gain with which this run started; a larger one needs the key force_gain.limit of "
+                            "its supervision"));
 }
 
 }  // namespace
