@@ -44,10 +44,15 @@ damping_N_s_per_m = 23.0
 quintic_stiffness_N_per_m5 = 3.125e13
 )";
 
-tactus_cancellation made_from(const std::string& file) {
+tactus_cancellation_options options_of(const std::string& file) {
   tactus_cancellation_options options = TACTUS_CANCELLATION_OPTIONS_INIT;
   options.sample_time_s = cycle_s;
   options.file = file.c_str();
+  return options;
+}
+
+tactus_cancellation made_from(const std::string& file) {
+  const tactus_cancellation_options options = options_of(file);
   tactus_cancellation made = 0;
   tactus_error error = 0;
   EXPECT_EQ(tactus_cancellation_make(&options, &made, &error), TACTUS_OK) << (error != 0 ? take(error).line : "");
@@ -165,9 +170,7 @@ TEST_F(CApiCancellation, AStepAllocatesNothing) {
 
 TEST_F(CApiCancellation, AModelFileThatLacksAKeyIsRefused) {
   const std::string file = write("model.toml", "[control.model.motor]\nmass_kg = 0.02\n");
-  tactus_cancellation_options options = TACTUS_CANCELLATION_OPTIONS_INIT;
-  options.sample_time_s = cycle_s;
-  options.file = file.c_str();
+  const tactus_cancellation_options options = options_of(file);
   tactus_cancellation made = 1;
   tactus_error error = 0;
   ASSERT_EQ(tactus_cancellation_make(&options, &made, &error), TACTUS_MISSING);
@@ -177,9 +180,7 @@ TEST_F(CApiCancellation, AModelFileThatLacksAKeyIsRefused) {
 
 TEST_F(CApiCancellation, AWrongValueIsRefusedWithPlaceValueBoundsAndRemedy) {
   const std::string file = write("model.toml", "[control.model.motor]\nmass_kg = -0.0075\n");
-  tactus_cancellation_options options = TACTUS_CANCELLATION_OPTIONS_INIT;
-  options.sample_time_s = cycle_s;
-  options.file = file.c_str();
+  tactus_cancellation_options options = options_of(file);
   tactus_cancellation made = 1;
   tactus_error error = 0;
   ASSERT_EQ(tactus_cancellation_make(&options, &made, &error), TACTUS_OUT_OF_BOUNDS);

@@ -216,7 +216,15 @@ TEST(BlockingLink, ADriverThatCannotBeOpenedAgainEndsWhenItIsStopped) {
       longest_silence_s);
   ASSERT_FALSE(link->wait_until_asked(patient));
   fails = true;
-  ASSERT_TRUE(becomes([&] { return seen->closed > 1; }));
+  ASSERT_TRUE(becomes([&] { return link->problem().has_value(); }));
+  // Though it can be opened, it cannot be driven: that stays reported, and no command reaches it.
+  link->command(torque(1.0));
+  bool always = true;
+  ASSERT_TRUE(becomes([&] {
+    always = always && link->problem() && link->newest()->state == BusState::asking && seen->enabled == 0;
+    return seen->closed > 2;
+  }));
+  EXPECT_TRUE(always);
   link->stop();
   EXPECT_FALSE(link->running());
   EXPECT_EQ(seen->opened, seen->closed);

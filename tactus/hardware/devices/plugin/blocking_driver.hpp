@@ -30,7 +30,7 @@ struct MotorAbility {
 /// All functions but `motors`, `cycle_s` and `ability` are called on that thread, one after another. They may block,
 /// allocate and throw. If the first `open` or the first `exchange` throws or returns an error, the run does not start.
 /// If a later `exchange` does, `close` is called, both sites hold with the reason, and `open` is called again every
-/// second until it succeeds. The operator can then arm the sites again.
+/// second until it and an `exchange` without torque succeed. The operator can then arm the sites again.
 ///
 /// **The device must remove its torque by itself when `exchange` is no longer called**, within `watchdog_s` of the rig
 /// file: the program may be killed at any time. Controllers of robots do; if yours does not, do not drive it.

@@ -114,8 +114,8 @@ class BlockingLink::Shared {
     if (std::exchange(open_, false)) driver_->close();
   }
 
-  /// Closes a driver that failed, and opens it again until that succeeds or the link stops. Its commands count again
-  /// once a cycle enables nothing. Returns the last failure if the link stops.
+  /// Closes a driver that failed, and opens it again until that and a cycle without torque succeed, or the link stops.
+  /// Its commands count again once a control cycle enables nothing. Returns the last failure if the link stops.
   Check reopen(Error error) {
     while (true) {
       close();
@@ -131,6 +131,7 @@ class BlockingLink::Shared {
         if (changed_.wait_for(lock, before_reopening, [this] { return is_stopping(); })) return error;
       }
       Check again = open();
+      if (!again) again = cycle(false);
       if (!again) break;
       error = *std::move(again);
     }
