@@ -155,6 +155,15 @@ TEST(FourChannelCancellation, TheSlaveCancelsWhateverTheFilesSwitchSays) {
   EXPECT_EQ(largest_difference(on, slave_commands(params, 0)), 0.0);
 }
 
+// The slave would go on to subtract the motion of the old gain.
+TEST(FourChannelCancellation, TheForceGainCannotBeChangedWhileTheLoopRuns) {
+  const auto gain_of = [](const char* name) {
+    return find_architecture(name)->make(linear(name), Seconds{tick_s}).value().master->force_gain();
+  };
+  EXPECT_EQ(gain_of("four-channel-cancellation"), std::nullopt);
+  EXPECT_EQ(gain_of("position-force"), linear("position-force").force_gain);
+}
+
 TEST(FourChannelCancellation, WithDelayTheSlaveCancelsTooEarlyAndTheTwoPart) {
   const auto on_master = slave_commands(linear("position-force"), 10);
   const auto on_slave = slave_commands(linear("four-channel-cancellation"), 10);

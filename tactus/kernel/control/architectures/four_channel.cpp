@@ -131,6 +131,19 @@ Result<Controllers> make_four_channel(const ControlParams& params, Seconds dt) {
   return Controllers{master_controller(*master), slave_controller(*slave)};
 }
 
+/// The slave computes with the master's force gain, so the gain may not change while the loop runs: this master offers
+/// no `set_force_gain`.
+class FixedGainMaster {
+ public:
+  explicit FixedGainMaster(const PositionForceMaster& master) : master_(master) {}
+  MasterOutput respond(const MasterInput& input) noexcept { return master_.respond(input); }
+  void applied(double motor_force_N) noexcept { master_.applied(motor_force_N); }
+  void reset() noexcept { master_.reset(); }
+
+ private:
+  PositionForceMaster master_;
+};
+
 Result<Controllers> make_four_channel_cancellation(const ControlParams& params, Seconds dt) {
   PositionForceMaster::Params plain = params;
   plain.cancellation = CancellationMode::off;
@@ -138,7 +151,7 @@ Result<Controllers> make_four_channel_cancellation(const ControlParams& params, 
   if (!master) return master.error();
   const auto slave = CancellingSlave::make({.master = params, .slave = params.slave}, dt);
   if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
+  return Controllers{master_controller(FixedGainMaster(*master)), slave_controller(*slave)};
 }
 
 }  // namespace
