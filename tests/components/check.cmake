@@ -2,15 +2,15 @@
 # Every component configures alone, with those on which it builds, and finds the libraries of these alone; so does what is
 # left when one is left out. `kernel` is built and installed, and a loop around cancellation builds against it and runs. Then
 # `identification` and `hardware` are built, without the simulator.
-# SOURCE is the source folder of tactus, SCRATCH a folder to work in; GENERATOR and COMPILER as in the build.
+# SOURCE is the source folder of tactus, SCRATCH a folder to work in, BESIDE the folder of that build, which is beside the build
+# folder that runs this test; GENERATOR, COMPILER, BUILD_TYPE and WARNINGS_AS_ERRORS are those of this one.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../run.cmake)
 include(${SOURCE}/cmake/TactusComponents.cmake)
 
-# What is built is to build and to run once, so no module is optimised, as some are in every release, and the compiler is
-# known to work.
+# With the same flags and relative paths, ccache has most of what is compiled here. The compiler is known to work.
 set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_COMPILER_WORKS=ON
-              -D CMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -DNDEBUG")
+              -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D TACTUS_WARNINGS_AS_ERRORS=${WARNINGS_AS_ERRORS})
 
 # What a component finds, in the words of CMake's cache.
 set(finds_kernel Eigen3_DIR)
@@ -55,7 +55,7 @@ function(check_configuration wanted)
   endforeach()
 endfunction()
 
-file(REMOVE_RECURSE ${SCRATCH})
+file(REMOVE_RECURSE ${SCRATCH} ${BESIDE})
 foreach(component IN LISTS TACTUS_ALL_COMPONENTS)
   if(component STREQUAL "mpi")  # nothing builds on it
     continue()
@@ -105,9 +105,9 @@ if(status EQUAL 0 OR NOT refusal MATCHES "TACTUS_BUILD_TESTS needs every compone
   message(FATAL_ERROR "tests of a part were taken:\n${refusal}")
 endif()
 
-run(${configure} -S ${SOURCE} -B ${SCRATCH}/kernel -D TACTUS_COMPONENTS=kernel)
-run(${CMAKE_COMMAND} --build ${SCRATCH}/kernel --parallel 1)
-run(${CMAKE_COMMAND} --install ${SCRATCH}/kernel --prefix ${SCRATCH}/prefix)
+run(${configure} -S ${SOURCE} -B ${BESIDE} -D TACTUS_COMPONENTS=kernel)
+run(${CMAKE_COMMAND} --build ${BESIDE} --parallel 1)
+run(${CMAKE_COMMAND} --install ${BESIDE} --prefix ${SCRATCH}/prefix)
 run(${configure} -S ${SOURCE}/examples/cancellation-loop -B ${SCRATCH}/loop -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix)
 run(${CMAKE_COMMAND} --build ${SCRATCH}/loop --parallel 1)
 run(${SCRATCH}/loop/cancellation-loop)
@@ -125,5 +125,5 @@ if(status EQUAL 0 OR NOT refusal MATCHES "has no component `hardware`; it has:[ 
 endif()
 
 # Two more components are built with those on which they build. The folder already has the kernel.
-run(${configure} -S ${SOURCE} -B ${SCRATCH}/kernel "-DTACTUS_COMPONENTS=identification;hardware")
-run(${CMAKE_COMMAND} --build ${SCRATCH}/kernel --parallel 1)
+run(${configure} -S ${SOURCE} -B ${BESIDE} "-DTACTUS_COMPONENTS=identification;hardware")
+run(${CMAKE_COMMAND} --build ${BESIDE} --parallel 1)

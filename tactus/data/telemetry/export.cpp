@@ -57,7 +57,8 @@ std::string Identifiers::unique(std::string_view name) {
 double wall_seconds(std::uint64_t start_unix_ns, std::uint64_t time_ns) {
   constexpr std::uint64_t per_s = 1'000'000'000;
   const std::uint64_t all_ns = start_unix_ns + time_ns;
-  return static_cast<double>(all_ns / per_s) + 1e-9 * static_cast<double>(all_ns % per_s);
+  const std::uint64_t whole_s = all_ns / per_s;
+  return static_cast<double>(whole_s) + 1e-9 * static_cast<double>(all_ns % per_s);
 }
 
 ExportColumns::ExportColumns(const LogTable& table, std::optional<std::uint64_t> start_unix_ns) {

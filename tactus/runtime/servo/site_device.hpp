@@ -17,7 +17,7 @@ class SimulatedOperator {
   SimulatedOperator() = default;
   SimulatedOperator(const SimulatedOperator&) = default;
   SimulatedOperator& operator=(const SimulatedOperator&) = default;
-  ~SimulatedOperator() = default;  ///< owned by the device
+  virtual ~SimulatedOperator() = default;  ///< owned by the device
 };
 
 /// What a site drives.

@@ -246,7 +246,7 @@ DynamixelPeer::State* DynamixelPeer::find(std::uint8_t id) noexcept {
   return found == servos_.end() ? nullptr : &*found;
 }
 
-std::int64_t DynamixelPeer::delay_ns(const State& servo) noexcept { return 2000 * servo.table[9]; }
+std::int64_t DynamixelPeer::delay_ns(const State& servo) noexcept { return std::int64_t{2000} * servo.table[9]; }
 
 /// One servo answers for itself.
 void DynamixelPeer::obey(State& servo, std::uint8_t instruction, Bytes parameters, bool whole,

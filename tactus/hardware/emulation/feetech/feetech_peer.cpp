@@ -201,7 +201,7 @@ void FeetechPeer::packet_came(Bytes packet, std::int64_t now_ns) noexcept {
       if (!answers(servo, now_ns)) continue;
       at_ns += delay_ns(servo);
       status(servo, {}, at_ns);
-      at_ns += 6 * 10 * std::int64_t{1'000'000'000} / bits_per_s_;
+      at_ns += std::int64_t{6} * 10 * 1'000'000'000 / bits_per_s_;
     }
   }
   if (instruction == 0x83 && given.size() > 2 && given[1] > 0) {
@@ -222,7 +222,7 @@ void FeetechPeer::packet_came(Bytes packet, std::int64_t now_ns) noexcept {
         at_ns += delay_ns(*servo);
         status(*servo, Bytes(servo->table).subspan(given[0], given[1]), at_ns);
       }
-      at_ns += (6 + given[1]) * 10 * std::int64_t{1'000'000'000} / bits_per_s_;  // empty where it is silent
+      at_ns += std::int64_t{6 + given[1]} * 10 * 1'000'000'000 / bits_per_s_;  // empty where it is silent
     }
   }
 }
