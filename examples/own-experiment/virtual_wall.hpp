@@ -50,7 +50,7 @@ struct WallDamper {
   }
 };
 
-/// A file of this kind. Sections that `tapping` has too mean the same.
+/// A file of this kind. Sections that also exist in `tapping` have the same meaning here.
 struct VirtualWallParams {
   tactus::mechanics::CableDrivenMaster::Params master;
   tactus::mechanics::Operator::Params person;
@@ -76,7 +76,7 @@ struct Press {
   double settling_time_s = 0.0;  ///< from the first touch
   double pressed_in_m = 0.0;     ///< how deep the motor is in the wall at the end
   std::vector<double> time_s;    ///< of each tick
-  std::vector<double> force_N;   ///< of the wall on the master, 0 before it
+  std::vector<double> force_N;   ///< of the wall on the master, 0 in front of the wall
 };
 
 struct VirtualWallResult {

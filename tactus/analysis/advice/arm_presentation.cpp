@@ -115,7 +115,7 @@ report::Table tried_table(const ArmAdvice& advice) {
                        {"felt", "%"},
                        {"lag", "mm"},
                        {"effort", "N"}},
-                      "What was tried to the end, the advice first; felt, lag and effort of each hand");
+                      "Methods that were tested in full, the advice first; felt, lag and effort of each hand");
   const auto add = [&](const ArmCandidate& one) {
     table.add_row({words_of(one) + (one.within_costs ? "" : " (costs too much)"), three_digits(one.force_gain),
                    experiments::gain_limit_text(one.limit, lowest_arm_gain),

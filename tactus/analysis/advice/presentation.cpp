@@ -96,7 +96,7 @@ report::Table table_of(const Bench& bench, const Advice& advice) {
                        {"display", "N"},
                        {"hand error", "%"},
                        {"effort", "mN"}},
-                      "What was tried to the end, the advice first");
+                      "Methods that were tested in full, the advice first");
   const auto add = [&](const Candidate& one) {
     table.add_row({words_of(bench, one), number(one.force_gain), one.first_gain > 0.0 ? number(one.first_gain) : "none",
                    experiments::gain_limit_text(one.limit, lowest_gain), number(one.force_limit_N),

@@ -141,6 +141,22 @@ report::Table limits_table(const RigSide& side, const BusFinding& found, const s
   return table;
 }
 
+/// The limits that the file alone has. A row for each joint that gives force.
+report::Table rates_table(const RigSide& side, const std::string& name) {
+  const devices::JointWords& words = side.joints.front().words();
+  const std::string force = words.force_unit, position = words.position_unit;
+  report::Table table({{"joint", "", report::Column::Align::left},
+                       {"force rate", force + "/s"},
+                       {"stiffness", force + "/" + position},
+                       {"damping", force + " s/" + position}});
+  for (const RigJoint& one : side.joints) {
+    if (!Rig::holds(name, one.path) || !one.joint.gives_force) continue;
+    table.add_row({std::string(one.name()), number(one.joint.torque_rate_limit_Nm_per_s),
+                   number(one.joint.stiffness_limit_Nm_per_rad), number(one.joint.damping_limit_Nms_per_rad)});
+  }
+  return table;
+}
+
 Result<bool> limits(const LimitsOptions& options) {
   const auto rig = Rig::load(options.rig);
   if (!rig) return rig.error();
@@ -150,6 +166,13 @@ Result<bool> limits(const LimitsOptions& options) {
     const BusFinding found = examine(*rig, *side);
     if (!found.heard) return unheard(*side, found);
     std::cout << side->path << "\n" << limits_table(*side, found, options.name).to_text();
+    const auto shown = [&options](const RigJoint& one) {
+      return Rig::holds(options.name, one.path) && one.joint.gives_force;
+    };
+    if (std::ranges::any_of(side->joints, shown)) {
+      std::cout << "\nof the file, for changes of the force and for the motors' own control\n"
+                << rates_table(*side, options.name).to_text();
+    }
   }
   if (Check error = flush_standard_output()) return *std::move(error);
   return true;

@@ -46,6 +46,22 @@ const RigSide& side_of(const RigPair& pair, SiteRole role) {
   return role == SiteRole::master ? *pair.leader : *pair.follower;
 }
 
+std::string unstated_friction(const station::DescribedArms& arms) {
+  const auto line_of = [](const station::DescribedArm& one) {
+    std::string joints;
+    for (std::size_t i = 0; i < one.joints.size(); ++i) {
+      if (one.arm.chain.joints[i].friction.coulomb_N_m > 0.0) continue;
+      joints += (joints.empty() ? "" : ", ") + one.joints[i];
+    }
+    if (joints.empty()) return joints;
+    return "tactus: " + one.urdf + " states no friction for " + joints +
+           ": 0 is assumed, so neither feed-forward nor the observer's dead band accounts for it; write <dynamics "
+           "friction=\"...\"/> in N m, or identify it with 'tactus identify arm'\n";
+  };
+  const std::string leader = line_of(arms.leader), follower = line_of(arms.follower);
+  return leader == follower ? leader : leader + follower;
+}
+
 Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPair& pair, RigLoop::Params settings,
                                 std::optional<SiteRole> only) {
   const auto params = request.document.read<experiments::TappingParams>();

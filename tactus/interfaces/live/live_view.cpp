@@ -308,7 +308,7 @@ void LiveView::show(std::size_t loop, const LoopTick& tick, bool every_tick, con
   watched.state.dropped = lost_ticks();
   watched.state.verdict = tick.stopped ? "stopped" : word_of(watched.judge.verdict());
   watched.state.cause =
-      tick.stopped ? "A safety gate closed or a device left its workspace; reset starts over." : watched.judge.cause();
+      tick.stopped ? "A safety gate latched or a device left its workspace; reset starts over." : watched.judge.cause();
   watched.state.advice = tick.stopped ? "" : advice(loop);
   watched.state.force_limit_N = force_limit_N(params_[loop]);
   publish(first_topic + state, tick.time_ns, shared(to_cdr(watched.state)));

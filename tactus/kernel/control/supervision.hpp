@@ -28,8 +28,8 @@ struct HoldParams {
   double release_s = 1.0;
   static constexpr auto fields() {
     return List{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
-                      "Time in which the site's force falls to zero after it goes to hold. A slave that must not sink "
-                      "or swing away needs a brake.")};
+                      "Time in which the coupling force falls to zero after the site goes to hold; gravity compensation "
+                      "stays on. A slave that must not sink or swing away needs a brake.")};
   }
 };
 

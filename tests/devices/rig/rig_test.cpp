@@ -327,8 +327,8 @@ TEST(Rig, AJointAtTheEndOfALeverFollowsAnAxisThatSlides) {
       "torque_rate_limit_Nm_per_s = 50.0\n";
   EXPECT_EQ(
       problem_of(leader + follower(turning)),
-      "rig.toml:15:1: desk.follower.x: it is in rad, and desk.leader.x in m: state lever_m, the way in m for each "
-      "radian of the motor, of the one that turns, and its limits in m and N");
+      "rig.toml:15:1: desk.follower.x: it is in rad, and desk.leader.x in m: for the joint that turns, state lever_m "
+      "(its displacement in m per radian of the motor), and limits in m and N");
   EXPECT_NE(problem_of(leader + follower("lever_m = 20.0\n" + limits)).find("desk.follower.x.lever_m: 20"),
             std::string::npos);
   EXPECT_NE(problem_of(leader + follower("lever_m = 0.2\n" + turning)).find("lower_rad: unknown key"),

@@ -274,8 +274,8 @@ Check Rig::match_joints(RigPair& pair) {
     return at(joint.path, ErrorCode::inconsistent,
               std::string("it is in ") + joint.words().position_unit + ", and " + leads.path + " in " +
                   leads.words().position_unit +
-                  ": state lever_m, the way in m for each radian of the motor, of the one "
-                  "that turns, and its limits in m and N");
+                  ": for the joint that turns, state lever_m (its displacement in m per radian of the motor), and "
+                  "limits in m and N");
   }
   const auto place = [&pair](const RigJoint& joint) {
     return std::ranges::find(pair.leader->joints, joint.name(), &RigJoint::name) - pair.leader->joints.begin();

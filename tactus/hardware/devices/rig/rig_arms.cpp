@@ -114,7 +114,9 @@ Result<RigSide> in_order(const RigSide& side, const station::DescribedArm& arm, 
     if (found == side.joints.end()) {
       return problem_at(side.path, ErrorCode::missing,
                         "the arm of " + arm.urdf + " has a joint " + arm.joints[i] +
-                            ", and the rig has no such joint: write [" + join(side.path, arm.joints[i]) + "]");
+                            ", and the rig has no such joint: write [" + join(side.path, arm.joints[i]) +
+                            "]; or, if the arm ends before it (it is a finger, say), name the arm's last link as tip "
+                            "under [arm] of the experiment");
     }
     if (Check error = add(*found, asked[i])) return *std::move(error);
     if (Check error = check_limits(*found, arm.arm.chain.joints[i].limits, arm.urdf)) return *std::move(error);
