@@ -15,7 +15,7 @@
 namespace tactus::mechanics {
 
 /// The slave as a plant: a device like the master, its tip facing a wall, with an encoder on the motor and a force
-/// sensor behind the tip (paper A, Fig. 9: two equal joysticks).
+/// sensor at the tip (paper A, Fig. 9: two equal joysticks).
 ///
 /// It runs on the plant's substeps. A substep in which the tip meets or leaves the wall's surface is cut there: the
 /// instant is found by false position, trying parts of the substep, and the two parts are stepped one after the other,
@@ -31,7 +31,7 @@ class ElectricSlave {
       return List{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and tip."),
                   field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
                   field("encoder", &Params::encoder, "Position encoder on the motor."),
-                  field("force_sensor", &Params::force_sensor, "Force sensor behind the tip.")};
+                  field("force_sensor", &Params::force_sensor, "Force sensor at the tip: measures the contact force.")};
     }
   };
 
