@@ -144,7 +144,7 @@ Result<std::vector<LimitRung>> limit_ladder(const TappingParams& params, const L
                    .adds = "",
                    .limit = as_searched(gain_limit(*loop).force_gain)});
   rungs.push_back({.key = "bonded",
-                   .words = "the same in time, tip glued on",
+                   .words = "simulated in time, tip bonded",
                    .adds = "plants stepped, not solved",
                    .limit = bisect_linear_limit(bonded, lowest_tried_gain, highest_linear_gain)});
   Loop judged = *loop;
@@ -161,7 +161,7 @@ Result<std::vector<LimitRung>> limit_ladder(const TappingParams& params, const L
     const double allowed_s =
         experiments::settled_within_s + 2.0 * (params.channel.to_slave.delay_s + params.channel.to_master.delay_s);
     rungs.push_back({.key = "judged",
-                     .words = "linear loop, judged as taps are",
+                     .words = "linear loop, criterion of taps",
                      .adds = "ringing must end in time",
                      .limit = experiments::find_gain_limit(lowest_tried_gain, highest_linear_gain, [&](double gain) {
                        return rings_out(judged, gain, allowed_s);
@@ -169,7 +169,7 @@ Result<std::vector<LimitRung>> limit_ladder(const TappingParams& params, const L
   }
   const std::size_t first_tapped = rungs.size();
   rungs.push_back(
-      {.key = "contact", .words = "taps, else linear", .adds = "contact that is made and breaks", .limit = {}});
+      {.key = "contact", .words = "taps, otherwise linear", .adds = "contact that is made and breaks", .limit = {}});
   std::vector<TappingParams> cases{ideal}, without;
   std::vector<std::size_t> without_rung;
   for (const Stage& stage : stages) {

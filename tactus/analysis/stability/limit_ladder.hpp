@@ -23,7 +23,7 @@ inline constexpr double highest_tapped_gain = 32.0;
 struct LimitRung {
   std::string key;    ///< for programs
   std::string words;  ///< of what this is the limit
-  std::string adds;   ///< what comes in; empty for the first
+  std::string adds;   ///< the effect that is added; empty for the first
   experiments::GainLimit limit;
   /// Of the taps of the file with this one thing taken out again; none where that is not a thing to take out.
   std::optional<experiments::GainLimit> without = {};

@@ -29,8 +29,8 @@ std::string ratio(const experiments::GainLimit& limit, const experiments::GainLi
 report::Table ladder_table(const std::vector<LimitRung>& rungs) {
   report::Table table({{"gain limit of", "", report::Column::Align::left},
                        {"force gain"},
-                       {"over the one above"},
-                       {"what comes in", "", report::Column::Align::left}},
+                       {"over the row above"},
+                       {"effect added", "", report::Column::Align::left}},
                       "Gain limit, from the linear loop to the taps of the file");
   for (std::size_t i = 0; i < rungs.size(); ++i) {
     table.add_row(
@@ -40,8 +40,8 @@ report::Table ladder_table(const std::vector<LimitRung>& rungs) {
 }
 
 report::Table without_table(const std::vector<LimitRung>& rungs) {
-  report::Table table({{"taps of the file without", "", report::Column::Align::left}, {"force gain"}, {"over theirs"}},
-                      "One thing taken out at a time");
+  report::Table table({{"taps of the file without", "", report::Column::Align::left}, {"force gain"}, {"over row 1"}},
+                      "One effect removed at a time");
   table.add_row({"nothing", shown(rungs.back().limit), ""});
   for (const LimitRung& rung : rungs) {
     if (rung.without) table.add_row({rung.adds, shown(*rung.without), ratio(*rung.without, rungs.back().limit)});
@@ -163,17 +163,17 @@ Result<experiments::Outcome> report_limit(const experiments::Request& request, c
 
   const report::Table table = ladder_table(*rungs), taken_out = without_table(*rungs);
   const std::string verdict = "The taps of the file settle up to a force gain of " + shown(rungs->back().limit) + ".\n";
-  const std::string reason = cause != nullptr ? "The largest step of the first table comes in with: " + cause->adds +
-                                                    ". A step depends on the order; the second table does not.\n"
-                                              : "No step moves the limit by more than 5 %.\n";
+  const std::string reason = cause != nullptr ? "Largest change in the first table: " + cause->adds +
+                                                    ". A change depends on the order; the second table does not.\n"
+                                              : "No effect changes the limit by more than 5 %.\n";
   std::vector<report::Figure> figures{ladder_figure(*rungs),
                                       friction_figure(*curve, linear.force_gain, rungs->back().limit)};
   report::Page page(request.name + ": gain limit");
   page.paragraph(verdict + reason);
   page.paragraph(
       "The largest force gain up to which the contact calms down, from the linear loop to the taps of the file. Each "
-      "row "
-      "adds one thing. Taps count as settled when 95 % of them settle and half of them within 100 ms and two round "
+      "row adds one effect. Taps count as settled when 95 % of them settle and half of them within 100 ms and two "
+      "round "
       "trips.");
   page.table(table);
   page.table(taken_out);
