@@ -10,6 +10,7 @@ namespace tactus::runtime {
 /// The simulated operator at a simulated master, where there is one.
 class SimulatedOperator {
  public:
+  virtual ~SimulatedOperator() = default;
   /// Whether the site is coupled from now on. Once a cycle, on the servo thread; real-time safe.
   virtual void follow(bool follows) noexcept = 0;
 
@@ -17,7 +18,6 @@ class SimulatedOperator {
   SimulatedOperator() = default;
   SimulatedOperator(const SimulatedOperator&) = default;
   SimulatedOperator& operator=(const SimulatedOperator&) = default;
-  virtual ~SimulatedOperator() = default;  ///< owned by the device
 };
 
 /// What a site drives.
