@@ -10,7 +10,7 @@ station::DescribedArm arm_with(const char* urdf, double shoulder_N_m, double elb
   station::DescribedArm arm;
   arm.urdf = urdf;
   arm.joints = {"shoulder", "elbow"};
-  arm.arm.chain.joints.resize(2);
+  arm.arm.chain.joints = Joints<arm::JointParams>(2);
   arm.arm.chain.joints[0].friction.coulomb_N_m = shoulder_N_m;
   arm.arm.chain.joints[1].friction.coulomb_N_m = elbow_N_m;
   return arm;
