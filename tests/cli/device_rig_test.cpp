@@ -228,9 +228,10 @@ TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
   EXPECT_EQ(limits.out.find("arm.leader\n"), 0U) << limits.out;
   EXPECT_TRUE(says(limits, "shoulder        0.6190  0.3000  file ")) << limits.out;
   EXPECT_TRUE(says(limits, "elbow          0.06190  0.3000  motor ")) << limits.out;
-  const auto of_the_file = limits.out.find("force rate  stiffness  damping\n");
+  const auto of_the_file = limits.out.find("joint     force rate  stiffness    damping\n");
   ASSERT_NE(of_the_file, std::string::npos) << limits.out;
-  EXPECT_NE(limits.out.find("elbow          10.00          -        -\n", of_the_file), std::string::npos) << limits.out;
+  EXPECT_NE(limits.out.find("elbow          10.00          -          -\n", of_the_file), std::string::npos)
+      << limits.out;
 }
 
 /// The longest line in columns, headings and rules of tables included.

@@ -47,8 +47,8 @@ struct RigDrive {
 /// The side that the site of this role drives.
 const devices::RigSide& side_of(const devices::RigPair& pair, control::SiteRole role);
 
-/// What to tell a person of joints for which a URDF states no friction (`<dynamics friction>`): a line for each URDF
-/// with such joints, else empty.
+/// A message about joints for which a URDF states no friction (`<dynamics friction>`): a line for each URDF with such
+/// joints, else empty.
 std::string unstated_friction(const station::DescribedArms& arms);
 
 /// Of an experiment of one axis, whose sites drive each joint by itself; `only` where the other side runs elsewhere.

@@ -115,7 +115,7 @@ Result<RigSide> in_order(const RigSide& side, const station::DescribedArm& arm, 
       return problem_at(side.path, ErrorCode::missing,
                         "the arm of " + arm.urdf + " has a joint " + arm.joints[i] +
                             ", and the rig has no such joint: write [" + join(side.path, arm.joints[i]) +
-                            "]; or, if the arm ends before it (it is a finger, say), name the arm's last link as tip "
+                            "]; or, if the arm ends before it (a finger, for example), name the arm's last link as tip "
                             "under [arm] of the experiment");
     }
     if (Check error = add(*found, asked[i])) return *std::move(error);
