@@ -170,8 +170,7 @@ Result<bool> limits(const LimitsOptions& options) {
       return Rig::holds(options.name, one.path) && one.joint.gives_force;
     };
     if (std::ranges::any_of(side->joints, shown)) {
-      std::cout << "\nLimits of the file for the rate of the force, and for stiffness and damping in the motor's own "
-                   "control:\n"
+      std::cout << "\nLimits of the file for the force rate and for the motor's own control:\n"
                 << rates_table(*side, options.name).to_text();
     }
   }
