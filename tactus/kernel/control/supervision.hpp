@@ -27,9 +27,10 @@ namespace tactus::control {
 struct HoldParams {
   double release_s = 1.0;
   static constexpr auto fields() {
-    return List{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
-                      "Time in which the coupling force falls to zero after the site goes to hold; gravity compensation "
-                      "stays on. A slave that must not sink or swing away needs a brake.")};
+    return List{
+        field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
+              "Time in which the coupling force falls to zero after the site goes to hold; gravity compensation "
+              "stays on. A slave that must not sink or swing away needs a brake.")};
   }
 };
 

@@ -51,12 +51,12 @@ class SlaveForce {
     MomentumObserver::Params momentum_observer{.model = rigid_slave};
     KalmanForceEstimator::Params kalman{.model = rigid_slave, .force_walk_N = 20.0};
     static constexpr auto fields() {
-      return List{field("source", &Params::source,
-                        "The force sensor at the tip, or an estimator that needs no such sensor."),
-                  field("inverse_model", &Params::inverse_model, "Source inverse-model (paper B)."),
-                  field("disturbance_observer", &Params::disturbance_observer, "Source disturbance-observer."),
-                  field("momentum_observer", &Params::momentum_observer, "Source momentum-observer."),
-                  field("kalman", &Params::kalman, "Source kalman.")};
+      return List{
+          field("source", &Params::source, "The force sensor at the tip, or an estimator that needs no such sensor."),
+          field("inverse_model", &Params::inverse_model, "Source inverse-model (paper B)."),
+          field("disturbance_observer", &Params::disturbance_observer, "Source disturbance-observer."),
+          field("momentum_observer", &Params::momentum_observer, "Source momentum-observer."),
+          field("kalman", &Params::kalman, "Source kalman.")};
     }
   };
   struct Input {
