@@ -108,6 +108,17 @@ class Running {
     typed_ = -1;
   }
   void signal(int number) const { ::kill(child_, number); }
+  /// Whether it holds this signal back for the thread that waits for it. While it starts a thread, it holds back all.
+  [[nodiscard]] bool waits_for(int number) const {
+    std::ifstream status("/proc/" + std::to_string(child_) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (!line.starts_with("SigBlk:")) continue;
+      const auto held = std::stoull(line.substr(7), nullptr, 16);
+      const auto is_held = [held](int one) { return (held >> (one - 1) & 1) != 0; };
+      return is_held(number) && !is_held(SIGWINCH);
+    }
+    return false;
+  }
   [[nodiscard]] bool ended() {
     int status = 0;
     if (!status_ && waitpid(child_, &status, WNOHANG) == child_) {
@@ -301,6 +312,7 @@ TEST_F(ConsoleLost, ARunInRealTimeThatNobodyCanArmIsEndedByTheSignalThatArms) {
 TEST_F(ConsoleLost, ASiteThatIsInterruptedTwiceAtOnceEndsThoughNobodyReadsEitherOutput) {
   const auto ports = free_ports(2);
   Running site(folder(), lone_slave(ports[0], ports[1], {}), "", Running::Terminal::stalled);
+  ASSERT_TRUE(eventually([&site] { return site.waits_for(SIGINT); }));
   std::this_thread::sleep_for(1s);
   site.signal(SIGINT);
   std::this_thread::sleep_for(20ms);
