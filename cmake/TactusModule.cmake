@@ -41,7 +41,7 @@ if(TACTUS_SANITIZE)
     # optimised. Products of small matrices took three times as long by that, so they are always inlined.
     target_compile_definitions(tactus_options INTERFACE "EIGEN_STRONG_INLINE=inline __attribute__((always_inline))")
     # Tests start the command hundreds of times. With its place in memory fixed and without what nobody calls, a start takes
-    # two thirds.
+    # two thirds of the time.
     target_link_options(tactus_options INTERFACE
       $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>
       $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-Wl,--gc-sections>)

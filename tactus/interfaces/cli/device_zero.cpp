@@ -141,18 +141,17 @@ report::Table limits_table(const RigSide& side, const BusFinding& found, const s
   return table;
 }
 
-/// The limits that the file alone has. A row for each joint that gives force.
-report::Table rates_table(const RigSide& side, const std::string& name) {
-  const devices::JointWords& words = side.joints.front().words();
+/// The limits that the file alone has, of joints that give force.
+report::Table rates_table(const std::vector<const RigJoint*>& joints) {
+  const devices::JointWords& words = joints.front()->words();
   const std::string force = words.force_unit, position = words.position_unit;
   report::Table table({{"joint", "", report::Column::Align::left},
                        {"force rate", force + "/s"},
                        {"stiffness", force + "/" + position},
                        {"damping", force + " s/" + position}});
-  for (const RigJoint& one : side.joints) {
-    if (!Rig::holds(name, one.path) || !one.joint.gives_force) continue;
-    table.add_row({std::string(one.name()), number(one.joint.torque_rate_limit_Nm_per_s),
-                   number(one.joint.stiffness_limit_Nm_per_rad), number(one.joint.damping_limit_Nms_per_rad)});
+  for (const RigJoint* one : joints) {
+    table.add_row({std::string(one->name()), number(one->joint.torque_rate_limit_Nm_per_s),
+                   number(one->joint.stiffness_limit_Nm_per_rad), number(one->joint.damping_limit_Nms_per_rad)});
   }
   return table;
 }
@@ -166,12 +165,13 @@ Result<bool> limits(const LimitsOptions& options) {
     const BusFinding found = examine(*rig, *side);
     if (!found.heard) return unheard(*side, found);
     std::cout << side->path << "\n" << limits_table(*side, found, options.name).to_text();
-    const auto shown = [&options](const RigJoint& one) {
-      return Rig::holds(options.name, one.path) && one.joint.gives_force;
-    };
-    if (std::ranges::any_of(side->joints, shown)) {
+    std::vector<const RigJoint*> with_force;
+    for (const RigJoint& one : side->joints) {
+      if (Rig::holds(options.name, one.path) && one.joint.gives_force) with_force.push_back(&one);
+    }
+    if (!with_force.empty()) {
       std::cout << "\nLimits of the file for the force rate and for the motor's own control:\n"
-                << rates_table(*side, options.name).to_text();
+                << rates_table(with_force).to_text();
     }
   }
   if (Check error = flush_standard_output()) return *std::move(error);

@@ -187,7 +187,8 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
     (folder.json() ? errors : output)
         .say("Rehearsal: all motors are emulated, and no port of the rig file is opened.\n" + emulated->description());
   }
-  if (found->arms) say(unstated_friction(*found->arms));
+  const std::string friction = found->arms ? unstated_friction(*found->arms) : "";
+  if (!friction.empty()) say(friction);
   if (Check unclean = refuse_unclean(*rig, sides, say)) return unclean;
   // The devices give up their motors before the links do, and these before the guards.
   std::array<std::optional<DrivenSide>, 2> driven;

@@ -85,8 +85,8 @@ bool parse_slcan(std::span<const std::uint8_t> line, CanFrame& frame) noexcept {
   }
   frame = {
       .id = static_cast<std::uint16_t>(digits[1] << 8 | digits[2] << 4 | digits[3]), .size = digits[4], .data = {}};
-  if (frame.id > largest_id || frame.size > frame.data.size() || line.size() != head + 2 * std::size_t{frame.size})
-    return false;
+  const std::size_t whole = head + 2 * std::size_t{frame.size};
+  if (frame.id > largest_id || frame.size > frame.data.size() || line.size() != whole) return false;
   for (std::size_t i = 0; i < frame.size; ++i) {
     frame.data[i] = static_cast<std::uint8_t>(digits[head + 2 * i] << 4 | digits[head + 2 * i + 1]);
   }
